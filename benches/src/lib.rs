@@ -1,0 +1,1 @@
+//! cargo bench over the registry.

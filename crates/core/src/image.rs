@@ -1,0 +1,287 @@
+//! The picture, and the tiles that it is cut into.
+//!
+//! A [`Tile`] is a rectangle together with the row slices that it alone may write. The borrow
+//! checker proves that tiles are disjoint, so threads fill them at the same time without a lock
+//! and without `unsafe`.
+
+use sha2::{Digest as _, Sha256};
+use std::fmt;
+use std::num::NonZeroU32;
+use thiserror::Error;
+
+/// A linear RGB colour, not clamped.
+pub type Rgb = [f32; 3];
+
+/// The most pixels an [`Image`] may have: 2^28, which is 3 GiB.
+pub const MAX_PIXELS: u64 = 1 << 28;
+
+/// A picture in linear light, row by row from the top, each row from the left.
+///
+/// Two pictures are the same when their bits are: compare [`Image::digest`]s, or pixels with
+/// [`f32::to_bits`]. `==` compares bits too, so a NaN equals itself.
+#[derive(Clone)]
+pub struct Image {
+    width: u32,
+    height: u32,
+    pixels: Vec<Rgb>,
+}
+
+/// A picture that would not fit in memory, or has no pixels.
+#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+pub enum ImageError {
+    /// More than [`MAX_PIXELS`].
+    #[error(
+        "a picture of {width} x {height} pixels is over the limit of {MAX_PIXELS} pixels: choose a smaller size"
+    )]
+    TooLarge {
+        /// In pixels.
+        width: u32,
+        /// In pixels.
+        height: u32,
+    },
+    /// A width or height of 0.
+    #[error("a picture of {width} x {height} has no pixels: choose a width and a height of 1 or more")]
+    Empty {
+        /// In pixels.
+        width: u32,
+        /// In pixels.
+        height: u32,
+    },
+    /// The allocator refused.
+    #[error("no memory for a picture of {width} x {height} pixels: choose a smaller size")]
+    NoMemory {
+        /// In pixels.
+        width: u32,
+        /// In pixels.
+        height: u32,
+    },
+}
+
+impl Image {
+    /// A picture of `width` x `height` pixels, all filled with `color`.
+    ///
+    /// # Errors
+    ///
+    /// A size without pixels, above [`MAX_PIXELS`], or that the allocator refuses.
+    pub fn filled(width: u32, height: u32, color: Rgb) -> Result<Self, ImageError> {
+        if width == 0 || height == 0 {
+            return Err(ImageError::Empty { width, height });
+        }
+        if u64::from(width) * u64::from(height) > MAX_PIXELS {
+            return Err(ImageError::TooLarge { width, height });
+        }
+        let count = width as usize * height as usize;
+        let mut pixels = Vec::new();
+        pixels.try_reserve_exact(count).map_err(|_| ImageError::NoMemory { width, height })?;
+        pixels.resize(count, color);
+        Ok(Self { width, height, pixels })
+    }
+
+    /// A black picture; errors as [`Image::filled`].
+    ///
+    /// # Errors
+    ///
+    /// As [`Image::filled`].
+    pub fn new(width: u32, height: u32) -> Result<Self, ImageError> {
+        Self::filled(width, height, [0.0; 3])
+    }
+
+    /// In pixels, 1 or more.
+    #[must_use]
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// In pixels, 1 or more.
+    #[must_use]
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// Row by row from the top: pixel `(x, y)` is number `y * width + x`.
+    #[must_use]
+    pub fn pixels(&self) -> &[Rgb] {
+        &self.pixels
+    }
+
+    /// As [`Image::pixels`], to write.
+    #[must_use]
+    pub fn pixels_mut(&mut self) -> &mut [Rgb] {
+        &mut self.pixels
+    }
+
+    /// The column and row of pixel number `index`.
+    #[must_use]
+    pub fn position(&self, index: usize) -> (u32, u32) {
+        let width = self.width as usize;
+        ((index % width) as u32, (index / width) as u32)
+    }
+
+    /// Overwrites every pixel.
+    pub fn fill(&mut self, color: Rgb) {
+        self.pixels.fill(color);
+    }
+
+    /// Cuts the picture into squares of `size` pixels a side, the last of a row or column smaller
+    /// where the picture ends: from the top, each row of tiles from the left.
+    #[must_use]
+    pub fn tiles(&mut self, size: NonZeroU32) -> Vec<Tile<'_>> {
+        let (width, size) = (self.width as usize, size.get().min(self.width.max(self.height)));
+        let mut tiles = Vec::new();
+        for (band, pixels) in self.pixels.chunks_mut(width * size as usize).enumerate() {
+            let height = pixels.len() / width;
+            let first = tiles.len();
+            tiles.extend((0..self.width).step_by(size as usize).map(|x| Tile {
+                area: Area {
+                    x,
+                    y: band as u32 * size,
+                    width: size.min(self.width - x),
+                    height: height as u32,
+                },
+                rows: Rows::Many(Vec::with_capacity(height)),
+            }));
+            for row in pixels.chunks_mut(width) {
+                for (tile, slice) in tiles[first..].iter_mut().zip(row.chunks_mut(size as usize)) {
+                    tile.rows.push(slice);
+                }
+            }
+        }
+        tiles
+    }
+
+    /// SHA-256 over width, height (as 32-bit integers) and the bits of every channel, all little-endian.
+    #[must_use]
+    pub fn digest(&self) -> Digest {
+        let mut hash = Sha256::new();
+        hash.update(self.width.to_le_bytes());
+        hash.update(self.height.to_le_bytes());
+        // A row at a time: one call a channel would cost more than the hash itself.
+        let mut bytes = Vec::with_capacity(self.width as usize * size_of::<Rgb>());
+        for row in self.pixels.chunks(self.width as usize) {
+            bytes.clear();
+            bytes.extend(row.as_flattened().iter().flat_map(|channel| channel.to_le_bytes()));
+            hash.update(&bytes);
+        }
+        Digest(hash.finalize().into())
+    }
+}
+
+impl PartialEq for Image {
+    fn eq(&self, other: &Self) -> bool {
+        let bits =
+            |image: &Self| -> Vec<u32> { image.pixels.as_flattened().iter().map(|c| c.to_bits()).collect() };
+        (self.width, self.height) == (other.width, other.height) && bits(self) == bits(other)
+    }
+}
+
+impl fmt::Debug for Image {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Image({} x {}, {})", self.width, self.height, self.digest())
+    }
+}
+
+/// A picture's fingerprint: equal exactly when size and bits are.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Digest([u8; 32]);
+
+impl Digest {
+    /// The first 16 hexadecimal digits, enough for a table.
+    #[must_use]
+    pub fn short(&self) -> String {
+        let mut text = self.to_string();
+        text.truncate(16);
+        text
+    }
+}
+
+impl fmt::Display for Digest {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.iter().try_for_each(|byte| write!(f, "{byte:02x}"))
+    }
+}
+
+impl fmt::Debug for Digest {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
+/// A rectangle of pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Area {
+    /// Column of its left pixels.
+    pub x: u32,
+    /// Row of its top pixels.
+    pub y: u32,
+    /// In pixels.
+    pub width: u32,
+    /// In pixels.
+    pub height: u32,
+}
+
+impl Area {
+    /// Whether pixel `(x, y)` is in it.
+    #[must_use]
+    pub fn contains(&self, x: u32, y: u32) -> bool {
+        (self.x..self.x + self.width).contains(&x) && (self.y..self.y + self.height).contains(&y)
+    }
+}
+
+impl fmt::Display for Area {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}x{} at ({}, {})", self.width, self.height, self.x, self.y)
+    }
+}
+
+/// A rectangle of the picture and the sole right to write it.
+#[derive(Debug)]
+pub struct Tile<'a> {
+    area: Area,
+    rows: Rows<'a>,
+}
+
+/// A single row needs no allocation: there are as many one-pixel tiles as pixels.
+#[derive(Debug)]
+enum Rows<'a> {
+    One(&'a mut [Rgb]),
+    Many(Vec<&'a mut [Rgb]>),
+}
+
+impl<'a> Tile<'a> {
+    /// The tile of the single pixel `(x, y)`, wherever its colour is kept.
+    #[must_use]
+    pub fn pixel(x: u32, y: u32, color: &'a mut Rgb) -> Self {
+        Self::row(x, y, std::slice::from_mut(color))
+    }
+
+    /// The tile of the pixels from `(x, y)` to the right, wherever their colours are kept.
+    #[must_use]
+    pub fn row(x: u32, y: u32, colors: &'a mut [Rgb]) -> Self {
+        let area = Area { x, y, width: colors.len() as u32, height: 1 };
+        Self { area, rows: Rows::One(colors) }
+    }
+
+    /// Which pixels of the picture these are.
+    #[must_use]
+    pub fn area(&self) -> Area {
+        self.area
+    }
+
+    /// The rows from the top, each with its y and its pixels from the left.
+    pub fn rows(&mut self) -> impl Iterator<Item = (u32, &mut [Rgb])> {
+        let rows = match &mut self.rows {
+            Rows::One(row) => std::slice::from_mut(row),
+            Rows::Many(rows) => rows.as_mut_slice(),
+        };
+        (self.area.y..).zip(rows.iter_mut().map(|row| &mut **row))
+    }
+}
+
+impl<'a> Rows<'a> {
+    fn push(&mut self, row: &'a mut [Rgb]) {
+        match self {
+            Self::Many(rows) => rows.push(row),
+            Self::One(_) => unreachable!("only tiles of many rows are built row by row"),
+        }
+    }
+}

@@ -1,0 +1,369 @@
+//! What is in a picture: camera, lights, materials and primitives, as plain data.
+//!
+//! Every number is an `f64` in scene units and every colour is linear RGB in 0..=1; the tracer
+//! rounds them once to the precision it works in. The fields are public, and [`Scene::check`]
+//! says whether they mean something. The rules live here, and here only: a reader of scene files
+//! adds to a [`Fault`] where in the file it stands.
+
+use glam::DVec3;
+use thiserror::Error;
+
+/// A whole scene: everything that decides the picture, except its size in pixels.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// Where the picture is seen from.
+    pub camera: Camera,
+    /// How the rays are followed and sampled.
+    pub render: RenderSettings,
+    /// Point lights, in file order.
+    pub lights: Vec<Light>,
+    /// The materials that primitives refer to by index.
+    pub materials: Vec<Material>,
+    /// Infinite planes; the first kind in the order that decides between equal distances.
+    pub planes: Vec<Plane>,
+    /// Spheres; the second kind.
+    pub spheres: Vec<Sphere>,
+    /// Triangles; the third kind.
+    pub triangles: Vec<Triangle>,
+    /// Open vertical cylinders; the last kind.
+    pub cylinders: Vec<Cylinder>,
+}
+
+/// A pinhole camera: an eye, and a screen at `focal_length` before it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// The eye.
+    pub position: DVec3,
+    /// A point that appears in the middle of the picture; not the eye itself.
+    pub look_at: DVec3,
+    /// A direction that appears upwards; not parallel to the view, of any length above 0.
+    pub up: DVec3,
+    /// Distance from the eye to the screen, above 0.
+    pub focal_length: f64,
+    /// Full width of the screen, above 0. Its height follows from the picture's proportions.
+    pub screen_width: f64,
+}
+
+/// The knobs of a rendering that a scene states and the command line may override.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RenderSettings {
+    /// The colour of a ray that hits nothing.
+    pub background: DVec3,
+    /// Mirror bounces after the primary ray, 0..=64.
+    pub max_reflections: u32,
+    /// Lattice density `s`: 0 for one ray a pixel, else 1..=32 for `(2 s + 1)^2` samples a pixel.
+    pub antialiasing: u32,
+}
+
+impl Default for RenderSettings {
+    fn default() -> Self {
+        Self { background: DVec3::ZERO, max_reflections: 4, antialiasing: 2 }
+    }
+}
+
+/// A point light without fall-off.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Light {
+    /// Where it stands.
+    pub position: DVec3,
+    /// Its colour.
+    pub color: DVec3,
+    /// The factor on its colour, 0 or more.
+    pub power: f64,
+}
+
+/// How a surface answers light (Phong, 1975), and how much of a mirror it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Material {
+    /// The surface's own colour.
+    pub color: DVec3,
+    /// Share of the colour that is there without any light, 0 or more.
+    pub ambient: f64,
+    /// Share of the colour under a light straight above, 0 or more.
+    pub diffuse: f64,
+    /// Strength of the highlight, 0 or more.
+    pub specular: f64,
+    /// Exponent of the highlight, 1..=1024.
+    pub shininess: u32,
+    /// Share of the mirrored colour, 0..=1.
+    pub reflection: f64,
+}
+
+impl Material {
+    /// A material of this colour with the model's defaults for everything else.
+    #[must_use]
+    pub fn new(color: DVec3) -> Self {
+        Self { color, ambient: 0.1, diffuse: 0.6, specular: 0.4, shininess: 2, reflection: 0.0 }
+    }
+}
+
+/// An infinite plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plane {
+    /// Any point of it.
+    pub point: DVec3,
+    /// Its normal, of any length above 0.
+    pub normal: DVec3,
+    /// Index into [`Scene::materials`].
+    pub material: usize,
+}
+
+/// A sphere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sphere {
+    /// Its centre.
+    pub center: DVec3,
+    /// Its radius, above 0.
+    pub radius: f64,
+    /// Index into [`Scene::materials`].
+    pub material: usize,
+}
+
+/// A triangle, edges included.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Triangle {
+    /// Its corners, not on one line.
+    pub vertices: [DVec3; 3],
+    /// Index into [`Scene::materials`].
+    pub material: usize,
+}
+
+/// The wall of a cylinder whose axis is parallel to y: no caps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cylinder {
+    /// The lower end of its axis.
+    pub bottom: DVec3,
+    /// The upper end of its axis: `bottom` but for a greater y.
+    pub top: DVec3,
+    /// Its radius, above 0.
+    pub radius: f64,
+    /// Index into [`Scene::materials`].
+    pub material: usize,
+}
+
+/// One thing in a scene that means nothing: which key, what was expected, what was found.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[error("`{key}` must be {expected}, but is {found}")]
+pub struct Fault {
+    /// The key at fault, as a scene file spells it: `radius`.
+    pub key: &'static str,
+    /// What would be right: `a number above 0`.
+    pub expected: &'static str,
+    /// What is there: `-1`.
+    pub found: String,
+}
+
+/// A [`Fault`] and the entry it belongs to.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[error("{entry}: {fault}")]
+pub struct SceneError {
+    /// The entry, counted from 0 within its kind: `sphere[2]`.
+    pub entry: String,
+    /// What is wrong with it.
+    pub fault: Fault,
+}
+
+/// The largest value of [`RenderSettings::max_reflections`].
+pub const MAX_REFLECTIONS: u32 = 64;
+/// The largest value of [`RenderSettings::antialiasing`].
+pub const MAX_ANTIALIASING: u32 = 32;
+/// The largest value of [`Material::shininess`].
+pub const MAX_SHININESS: u32 = 1024;
+
+impl Scene {
+    /// Whether every entry obeys the model, each on its own and in its reference to a material.
+    ///
+    /// # Errors
+    ///
+    /// The first entry that does not, in the order camera, render, lights, materials, planes,
+    /// spheres, triangles, cylinders.
+    pub fn check(&self) -> Result<(), SceneError> {
+        let count = self.materials.len();
+        let known =
+            |material: usize| expect("material", material < count, "the index of a material", material);
+        locate("camera", self.camera.check())?;
+        locate("render", self.render.check())?;
+        check_all("light", &self.lights, Light::check)?;
+        check_all("material", &self.materials, Material::check)?;
+        check_all("plane", &self.planes, |p| p.check().and(known(p.material)))?;
+        check_all("sphere", &self.spheres, |s| s.check().and(known(s.material)))?;
+        check_all("triangle", &self.triangles, |t| t.check().and(known(t.material)))?;
+        check_all("cylinder", &self.cylinders, |c| c.check().and(known(c.material)))
+    }
+
+    /// The number of primitives of all kinds.
+    #[must_use]
+    pub fn primitive_count(&self) -> usize {
+        self.planes.len() + self.spheres.len() + self.triangles.len() + self.cylinders.len()
+    }
+}
+
+impl Camera {
+    /// Whether there is a view: finite numbers, a direction, an `up` beside it, a screen.
+    ///
+    /// # Errors
+    ///
+    /// The first key that breaks a rule.
+    pub fn check(&self) -> Result<(), Fault> {
+        finite("position", self.position)?;
+        finite("look_at", self.look_at)?;
+        finite("up", self.up)?;
+        positive("focal_length", self.focal_length)?;
+        positive("screen_width", self.screen_width)?;
+        let differs = self.look_at != self.position;
+        expect("look_at", differs, "a point other than `position`", self.look_at)?;
+        expect("up", self.up != DVec3::ZERO, "a vector other than zero", self.up)?;
+        let beside = !parallel(self.look_at - self.position, self.up);
+        expect("up", beside, "a direction not parallel to the view", self.up)
+    }
+}
+
+impl RenderSettings {
+    /// Whether the settings are within the model's limits.
+    ///
+    /// # Errors
+    ///
+    /// The first key that breaks a rule.
+    pub fn check(&self) -> Result<(), Fault> {
+        color("background", self.background)?;
+        let reflections = self.max_reflections;
+        expect("max_reflections", reflections <= MAX_REFLECTIONS, "an integer in 0..=64", reflections)?;
+        let density = self.antialiasing;
+        expect("antialiasing", density <= MAX_ANTIALIASING, "an integer in 0..=32", density)
+    }
+}
+
+impl Light {
+    /// Whether the light is finite, coloured in 0..=1 and of a power of 0 or more.
+    ///
+    /// # Errors
+    ///
+    /// The first key that breaks a rule.
+    pub fn check(&self) -> Result<(), Fault> {
+        finite("position", self.position)?;
+        color("color", self.color)?;
+        not_negative("power", self.power)
+    }
+}
+
+impl Material {
+    /// Whether every share and exponent is in its range.
+    ///
+    /// # Errors
+    ///
+    /// The first key that breaks a rule.
+    pub fn check(&self) -> Result<(), Fault> {
+        color("color", self.color)?;
+        not_negative("ambient", self.ambient)?;
+        not_negative("diffuse", self.diffuse)?;
+        not_negative("specular", self.specular)?;
+        let exponent = self.shininess;
+        expect("shininess", (1..=MAX_SHININESS).contains(&exponent), "an integer in 1..=1024", exponent)?;
+        let share = self.reflection;
+        expect("reflection", (0.0..=1.0).contains(&share), "a number in 0..=1", share)
+    }
+}
+
+impl Plane {
+    /// Whether the plane has a place and a direction.
+    ///
+    /// # Errors
+    ///
+    /// The first key that breaks a rule.
+    pub fn check(&self) -> Result<(), Fault> {
+        finite("point", self.point)?;
+        finite("normal", self.normal)?;
+        expect("normal", self.normal != DVec3::ZERO, "a vector other than zero", self.normal)
+    }
+}
+
+impl Sphere {
+    /// Whether the sphere has a place and a size.
+    ///
+    /// # Errors
+    ///
+    /// The first key that breaks a rule.
+    pub fn check(&self) -> Result<(), Fault> {
+        finite("center", self.center)?;
+        positive("radius", self.radius)
+    }
+}
+
+impl Triangle {
+    /// Whether the triangle is finite and has an area.
+    ///
+    /// # Errors
+    ///
+    /// The first key that breaks a rule.
+    pub fn check(&self) -> Result<(), Fault> {
+        let [a, b, c] = self.vertices;
+        for vertex in [a, b, c] {
+            finite("vertices", vertex)?;
+        }
+        let found = format_args!("{a}, {b}, {c}");
+        expect("vertices", !parallel(b - a, c - a), "three corners that span an area", found)
+    }
+}
+
+impl Cylinder {
+    /// Whether the cylinder stands upright and has a height and a radius.
+    ///
+    /// # Errors
+    ///
+    /// The first key that breaks a rule.
+    pub fn check(&self) -> Result<(), Fault> {
+        finite("bottom", self.bottom)?;
+        finite("top", self.top)?;
+        positive("radius", self.radius)?;
+        let upright = self.top.x == self.bottom.x && self.top.z == self.bottom.z;
+        expect("top", upright, "a point with the x and z of `bottom`", self.top)?;
+        expect("top", self.top.y > self.bottom.y, "a point above `bottom`", self.top)
+    }
+}
+
+fn check_all<T>(
+    kind: &str,
+    entries: &[T],
+    check: impl Fn(&T) -> Result<(), Fault>,
+) -> Result<(), SceneError> {
+    entries.iter().enumerate().try_for_each(|(i, entry)| locate(format!("{kind}[{i}]"), check(entry)))
+}
+
+fn locate(entry: impl Into<String>, result: Result<(), Fault>) -> Result<(), SceneError> {
+    result.map_err(|fault| SceneError { entry: entry.into(), fault })
+}
+
+fn expect(
+    key: &'static str,
+    holds: bool,
+    expected: &'static str,
+    found: impl std::fmt::Display,
+) -> Result<(), Fault> {
+    if holds { Ok(()) } else { Err(Fault { key, expected, found: found.to_string() }) }
+}
+
+fn finite(key: &'static str, v: DVec3) -> Result<(), Fault> {
+    expect(key, v.is_finite(), "finite numbers", v)
+}
+
+fn positive(key: &'static str, x: f64) -> Result<(), Fault> {
+    expect(key, x.is_finite() && x > 0.0, "a finite number above 0", x)
+}
+
+fn not_negative(key: &'static str, x: f64) -> Result<(), Fault> {
+    expect(key, x.is_finite() && x >= 0.0, "a finite number of 0 or more", x)
+}
+
+fn color(key: &'static str, c: DVec3) -> Result<(), Fault> {
+    let shares = c.to_array().iter().all(|share| (0.0..=1.0).contains(share));
+    expect(key, shares, "three numbers in 0..=1", c)
+}
+
+/// Whether two vectors span no area, but for the rounding of their own components.
+fn parallel(a: DVec3, b: DVec3) -> bool {
+    // Scaled to about 1 first, so that no product overflows or vanishes.
+    let (a, b) = (a / a.abs().max_element(), b / b.abs().max_element());
+    let area = a.cross(b).length();
+    // NaN, from a zero vector, counts as parallel too.
+    !(area > 8.0 * f64::EPSILON * a.length() * b.length())
+}

@@ -1,0 +1,1 @@
+//! One ordered slice that names every strategy.

@@ -1,0 +1,1 @@
+//! One rayon item a pixel, in a pool of its own.

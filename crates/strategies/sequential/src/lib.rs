@@ -1,0 +1,1 @@
+//! The reference: one thread, tile after tile.

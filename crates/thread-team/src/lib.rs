@@ -1,0 +1,1 @@
+//! Forks N scoped threads and joins them: what the hand-threaded strategies share.
