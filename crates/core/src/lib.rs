@@ -1,11 +1,32 @@
 //! The tracer, and the contract by which work and strategy know nothing of each other.
+//!
+//! * The contract: [`Image`] and [`Tile`], [`Work`], [`Strategy`].
+//! * What is drawn: [`Scene`], in `f64`.
+//! * The tracer: [`tracer()`] turns a scene into [`Work`]. Inside, a formula is written once over a
+//!   number type ([`lane`]); `primitives` finds what a ray hits, `trace` what colour that gives,
+//!   `tracer` filters samples into pixels.
+//!
+//! This crate starts no thread, opens no file and reads no clock.
 
+mod antialiasing;
+mod camera;
 pub mod image;
+pub mod lane;
+mod material;
+pub mod precision;
+mod primitives;
+mod ray;
 pub mod scene;
+mod shapes;
 pub mod strategy;
+mod trace;
+pub mod tracer;
+mod vector;
 pub mod work;
 
 pub use image::{Area, Digest, Image, Rgb, Tile};
+pub use precision::Precision;
 pub use scene::Scene;
 pub use strategy::{Plan, Renderer, Strategy, StrategyError, ThreadsStart};
+pub use tracer::tracer;
 pub use work::Work;

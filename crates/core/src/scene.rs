@@ -359,11 +359,16 @@ fn color(key: &'static str, c: DVec3) -> Result<(), Fault> {
     expect(key, shares, "three numbers in 0..=1", c)
 }
 
+/// `v` at unit length, for any finite `v` but zero: scaled first, so that no square overflows.
+pub(crate) fn unit(v: DVec3) -> DVec3 {
+    (v / v.abs().max_element()).normalize()
+}
+
 /// Whether two vectors span no area, but for the rounding of their own components.
-fn parallel(a: DVec3, b: DVec3) -> bool {
+pub(crate) fn parallel(a: DVec3, b: DVec3) -> bool {
     // Scaled to about 1 first, so that no product overflows or vanishes.
     let (a, b) = (a / a.abs().max_element(), b / b.abs().max_element());
     let area = a.cross(b).length();
     // NaN, from a zero vector, counts as parallel too.
-    !(area > 8.0 * f64::EPSILON * a.length() * b.length())
+    area.is_nan() || area <= 8.0 * f64::EPSILON * a.length() * b.length()
 }

@@ -50,7 +50,7 @@ pub struct Plan {
 /// Where a strategy starts its threads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ThreadsStart {
-    /// It has none of its own: the caller's thread computes.
+    /// It has none of its own: the caller's thread computes, alone, whatever the plan says.
     Never,
     /// While it is prepared: a pool, whose start is not part of a rendering's time.
     Prepare,

@@ -1,1 +1,23 @@
-//! One ordered slice that names every strategy.
+//! The one place that names every strategy. Lists, help, tests, benches and reports follow from it.
+
+use rayweave_core::Strategy;
+
+/// Every strategy, in the order of every list: the reference first, then from the simplest on.
+pub static STRATEGIES: &[&dyn Strategy] = &[
+    &rayweave_sequential::Sequential,
+    &rayweave_rayon_pixels::RayonPixels,
+    &rayweave_mutex_image::MutexImage,
+    &rayweave_tile_queue::TileQueue,
+];
+
+/// The strategy that every other one is compared with.
+#[must_use]
+pub fn reference() -> &'static dyn Strategy {
+    STRATEGIES[0]
+}
+
+/// The strategy of this name.
+#[must_use]
+pub fn find(name: &str) -> Option<&'static dyn Strategy> {
+    STRATEGIES.iter().copied().find(|strategy| strategy.name() == name)
+}

@@ -1,0 +1,46 @@
+//! From a place in the picture to a ray.
+
+use crate::lane::{Lane, Scalar};
+use crate::ray::Ray;
+use crate::scene::{self, unit};
+use crate::vector::Vector;
+
+/// The camera of a picture of a certain size and lattice density.
+///
+/// Places are counted in half steps of the sampling lattice from the middle of the picture: whole
+/// numbers, small enough to be exact in `f32`. So one lattice point is one pair of numbers,
+/// whichever pixel asks for it, and gives one ray, to the bit.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Camera<S> {
+    position: Vector<S>,
+    /// From the eye to the middle of the screen.
+    forward: Vector<S>,
+    /// Half a lattice step to the right on the screen.
+    right: Vector<S>,
+    /// Half a lattice step downwards on the screen.
+    down: Vector<S>,
+}
+
+impl<S: Scalar> Camera<S> {
+    /// For `width` x `height` pixels with `density` lattice steps a pixel.
+    pub(crate) fn new(camera: &scene::Camera, width: u32, density: u32) -> Self {
+        let view = unit(camera.look_at - camera.position);
+        let right = unit(view.cross(unit(camera.up)));
+        let up = right.cross(view);
+        // Pixels are square: the step is the same in both directions.
+        let half_step = camera.screen_width / (2.0 * f64::from(density) * f64::from(width));
+        Self {
+            position: Vector::rounded(camera.position),
+            forward: Vector::rounded(view * camera.focal_length),
+            right: Vector::rounded(right * half_step),
+            down: Vector::rounded(-up * half_step),
+        }
+    }
+
+    /// The ray through the point `right`, `down` half lattice steps from the middle of the screen.
+    #[inline(always)]
+    pub(crate) fn ray<L: Lane<Scalar = S>>(&self, right: L, down: L) -> Ray<L> {
+        let across = Vector::splat(self.right) * right + Vector::splat(self.down) * down;
+        Ray { origin: Vector::splat(self.position), direction: (Vector::splat(self.forward) + across).unit() }
+    }
+}

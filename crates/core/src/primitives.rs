@@ -1,0 +1,165 @@
+//! All primitives of a scene, and the two questions a ray asks of them: what is nearest, and is
+//! anything in between.
+
+use crate::lane::{Lane, Mask, Scalar};
+use crate::ray::{Ray, miss};
+use crate::scene::Scene;
+use crate::shapes::SurfacePoint;
+use crate::shapes::cylinder::{self, Cylinder};
+use crate::shapes::plane::Plane;
+use crate::shapes::sphere::{self, Sphere};
+use crate::shapes::triangle::{self, Triangle, longest_axis};
+use crate::vector::Vector;
+use std::ops::ControlFlow;
+
+/// The primitives by kind, in file order. A primitive's number counts through the kinds in this
+/// order: it decides between equal distances.
+#[derive(Debug)]
+pub(crate) struct Primitives<S> {
+    planes: Vec<Plane<S>>,
+    spheres: Vec<Sphere<S>>,
+    triangles: Vec<Triangle<S>>,
+    cylinders: Vec<Cylinder<S>>,
+    /// The material of each primitive, by its number.
+    materials: Vec<usize>,
+}
+
+/// The nearest hit of a ray.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Hit<L: Lane> {
+    /// Infinite where nothing is hit.
+    pub(crate) t: L,
+    /// The number of the primitive, where something is.
+    pub(crate) primitive: L::Index,
+}
+
+impl<L: Lane> Hit<L> {
+    #[inline(always)]
+    pub(crate) fn exists(&self) -> L::Mask {
+        self.t.lt(miss())
+    }
+}
+
+impl<S: Scalar> Primitives<S> {
+    pub(crate) fn new(scene: &Scene) -> Self {
+        let materials = (scene.planes.iter().map(|p| p.material))
+            .chain(scene.spheres.iter().map(|s| s.material))
+            .chain(scene.triangles.iter().map(|t| t.material))
+            .chain(scene.cylinders.iter().map(|c| c.material))
+            .collect();
+        Self {
+            planes: scene.planes.iter().map(Plane::new).collect(),
+            spheres: scene.spheres.iter().map(Sphere::new).collect(),
+            triangles: scene.triangles.iter().map(Triangle::new).collect(),
+            cylinders: scene.cylinders.iter().map(Cylinder::new).collect(),
+            materials,
+        }
+    }
+
+    /// The smallest `t`; of equal ones that of the lowest number, since only a smaller `t` replaces
+    /// what was found before.
+    #[inline(always)]
+    pub(crate) fn nearest<L: Lane<Scalar = S>>(&self, ray: &Ray<L>) -> Hit<L> {
+        let mut nearest = Hit { t: miss(), primitive: L::splat_index(0) };
+        let _ = self.visit(ray, |number, t: L| {
+            let nearer = t.lt(nearest.t);
+            nearest.t = L::select(nearer, t, nearest.t);
+            nearest.primitive = L::select_index(nearer, L::splat_index(number), nearest.primitive);
+            ControlFlow::Continue(())
+        });
+        nearest
+    }
+
+    /// The lanes of `wanted` whose ray meets something before `limit`.
+    #[inline(always)]
+    pub(crate) fn blocked<L: Lane<Scalar = S>>(&self, ray: &Ray<L>, limit: L, wanted: L::Mask) -> L::Mask {
+        let mut free = wanted;
+        let _ = self.visit(ray, |_, t: L| {
+            free = free & !t.lt(limit);
+            if free.any() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        });
+        wanted & !free
+    }
+
+    /// Shows the number and the `t` of every primitive, in order, until `found` has seen enough.
+    #[inline(always)]
+    fn visit<L: Lane<Scalar = S>>(
+        &self,
+        ray: &Ray<L>,
+        mut found: impl FnMut(u32, L) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        let mut number = 0;
+        for plane in &self.planes {
+            found(number, plane.intersect(ray))?;
+            number += 1;
+        }
+        if !self.spheres.is_empty() {
+            let aim = sphere::Aim::new(ray);
+            for sphere in &self.spheres {
+                found(number, sphere.intersect(ray, &aim))?;
+                number += 1;
+            }
+        }
+        if !self.triangles.is_empty() {
+            let [along_x, along_y, along_z] = longest_axis(ray.direction);
+            self.visit_triangles::<L, 0>(ray, along_x, number, &mut found)?;
+            self.visit_triangles::<L, 1>(ray, along_y, number, &mut found)?;
+            self.visit_triangles::<L, 2>(ray, along_z, number, &mut found)?;
+            number += self.triangles.len() as u32;
+        }
+        if !self.cylinders.is_empty() {
+            let aim = cylinder::Aim::new(ray);
+            for cylinder in &self.cylinders {
+                found(number, cylinder.intersect(ray, &aim))?;
+                number += 1;
+            }
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// The triangles for the rays that are longest along `AXIS`: one ray, or a packet of similar
+    /// ones, takes one of the three.
+    #[inline(always)]
+    fn visit_triangles<L: Lane<Scalar = S>, const AXIS: usize>(
+        &self,
+        ray: &Ray<L>,
+        along: L::Mask,
+        first: u32,
+        found: &mut impl FnMut(u32, L) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        if !along.any() {
+            return ControlFlow::Continue(());
+        }
+        let aim = triangle::Aim::<L, AXIS>::new(ray);
+        for (number, triangle) in (first..).zip(&self.triangles) {
+            let t = triangle.intersect(ray, &aim);
+            found(number, L::select(along, t, miss()))?;
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// The index of a primitive's material.
+    #[inline(always)]
+    pub(crate) fn material(&self, number: u32) -> usize {
+        self.materials[number as usize]
+    }
+
+    /// The point of primitive `number` next to `near`, and its normal there.
+    #[inline(always)]
+    pub(crate) fn surface<L: Lane<Scalar = S>>(&self, number: u32, near: Vector<L>) -> SurfacePoint<L> {
+        let mut index = number as usize;
+        if let Some(plane) = self.planes.get(index) {
+            return plane.surface(near);
+        }
+        index -= self.planes.len();
+        if let Some(sphere) = self.spheres.get(index) {
+            return sphere.surface(near);
+        }
+        index -= self.spheres.len();
+        if let Some(triangle) = self.triangles.get(index) {
+            return triangle.surface(near);
+        }
+        index -= self.triangles.len();
+        self.cylinders[index].surface(near)
+    }
+}

@@ -1,0 +1,80 @@
+//! The open cylinder around a vertical axis: a circle in x and z, bounded in y.
+
+use super::{SurfacePoint, clearance, quadric};
+use crate::lane::{Lane, Mask, Scalar};
+use crate::ray::{Ray, miss};
+use crate::scene;
+use crate::vector::Vector;
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cylinder<S> {
+    /// The lower end of the axis.
+    pub(crate) bottom: Vector<S>,
+    /// The y of its upper end.
+    pub(crate) top: S,
+    pub(crate) radius: S,
+    radius_squared: S,
+}
+
+/// What all cylinders ask of a ray.
+#[derive(Clone, Copy)]
+pub(crate) struct Aim<L> {
+    /// Of the direction's part across the axis. Infinite for a ray along the axis, which then
+    /// gives NaN and so a miss.
+    inverse_square: L,
+}
+
+impl<L: Lane> Aim<L> {
+    #[inline(always)]
+    pub(crate) fn new(ray: &Ray<L>) -> Self {
+        let Vector { x, z, .. } = ray.direction;
+        Self { inverse_square: L::literal(1.0) / (x * x + z * z) }
+    }
+}
+
+impl<S: Scalar> Cylinder<S> {
+    pub(crate) fn new(cylinder: &scene::Cylinder) -> Self {
+        let radius = S::from_f64(cylinder.radius);
+        Self {
+            bottom: Vector::rounded(cylinder.bottom),
+            top: S::from_f64(cylinder.top.y),
+            radius,
+            radius_squared: radius * radius,
+        }
+    }
+
+    /// Both roots are tried: the far wall is seen through the open end.
+    #[inline(always)]
+    pub(crate) fn intersect<L: Lane<Scalar = S>>(&self, ray: &Ray<L>, aim: &Aim<L>) -> L {
+        let zero = L::literal(0.0);
+        let radius_squared = L::splat(self.radius_squared);
+        let Vector { x: dx, y: dy, z: dz } = ray.direction;
+        let (cx, cz) = (L::splat(self.bottom.x) - ray.origin.x, L::splat(self.bottom.z) - ray.origin.z);
+        let closest = (cx * dx + cz * dz) * aim.inverse_square;
+        let (ax, az) = (cx - dx * closest, cz - dz * closest);
+        let discriminant = radius_squared - (ax * ax + az * az);
+        let crossed = zero.le(discriminant);
+        if !crossed.any() {
+            return miss();
+        }
+        let power = (cx * cx + cz * cz) - radius_squared;
+        let (near, far) = quadric::roots(closest, discriminant, power, aim.inverse_square);
+        let on_wall = |t: L| {
+            let y = ray.origin.y + dy * t;
+            zero.lt(t) & L::splat(self.bottom.y).le(y) & y.le(L::splat(self.top))
+        };
+        let t = L::select(on_wall(near), near, L::select(on_wall(far), far, miss()));
+        L::select(crossed, t, miss())
+    }
+
+    #[inline(always)]
+    pub(crate) fn surface<L: Lane<Scalar = S>>(&self, near: Vector<L>) -> SurfacePoint<L> {
+        let zero = L::literal(0.0);
+        let (bottom, radius) = (Vector::splat(self.bottom), L::splat(self.radius));
+        let normal = Vector::new(near.x - bottom.x, zero, near.z - bottom.z).unit();
+        let on_axis = Vector::new(bottom.x, near.y, bottom.z);
+        let point = on_axis + normal * radius;
+        let reach = bottom.abs() + Vector::new(radius, zero, radius);
+        SurfacePoint { point, normal, clearance: clearance(normal, point, reach) }
+    }
+}

@@ -1,0 +1,37 @@
+//! The infinite plane.
+
+use super::{SurfacePoint, clearance};
+use crate::lane::{Lane, Scalar};
+use crate::ray::{Ray, miss};
+use crate::scene;
+use crate::vector::Vector;
+
+/// The points `p` with `normal . (p - point) = 0`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Plane<S> {
+    pub(crate) point: Vector<S>,
+    /// Of unit length.
+    pub(crate) normal: Vector<S>,
+}
+
+impl<S: Scalar> Plane<S> {
+    pub(crate) fn new(plane: &scene::Plane) -> Self {
+        Self { point: Vector::rounded(plane.point), normal: Vector::rounded(scene::unit(plane.normal)) }
+    }
+
+    /// `t = n . (point - origin) / n . d`: the difference first, so that a scene far from the
+    /// origin of coordinates loses nothing. A parallel ray gives an infinity or NaN: a miss.
+    #[inline(always)]
+    pub(crate) fn intersect<L: Lane<Scalar = S>>(&self, ray: &Ray<L>) -> L {
+        let normal = Vector::splat(self.normal);
+        let t = normal.dot(Vector::splat(self.point) - ray.origin) / normal.dot(ray.direction);
+        L::select(L::literal(0.0).lt(t), t, miss())
+    }
+
+    #[inline(always)]
+    pub(crate) fn surface<L: Lane<Scalar = S>>(&self, near: Vector<L>) -> SurfacePoint<L> {
+        let (anchor, normal) = (Vector::splat(self.point), Vector::splat(self.normal));
+        let point = near - normal * normal.dot(near - anchor);
+        SurfacePoint { point, normal, clearance: clearance(normal, point, anchor.abs()) }
+    }
+}

@@ -1,0 +1,20 @@
+//! The two roots where a ray meets a circle or a sphere.
+
+use crate::lane::Lane;
+
+/// The roots `near <= far`, valid where `discriminant >= 0`.
+///
+/// `closest` is the `t` of the point of the ray nearest to the centre; `discriminant` is the
+/// squared radius less that point's squared distance (Hearn and Baker; Haines, Gunther,
+/// Akenine-Moller, Ray Tracing Gems, 2019, ch. 7), which does not cancel for far and grazing
+/// spheres as `b^2 - 4ac` does; `power` is the origin's squared distance from the centre less the
+/// squared radius. The root of greater magnitude is a sum without cancellation, the other follows
+/// from the product of the roots (Press et al., Numerical Recipes, 5.6).
+#[inline(always)]
+pub(crate) fn roots<L: Lane>(closest: L, discriminant: L, power: L, inverse_square: L) -> (L, L) {
+    let half_chord = (discriminant * inverse_square).sqrt();
+    let forward = L::literal(0.0).le(closest);
+    let greater = closest + L::select(forward, half_chord, -half_chord);
+    let lesser = power * inverse_square / greater;
+    (L::select(forward, lesser, greater), L::select(forward, greater, lesser))
+}

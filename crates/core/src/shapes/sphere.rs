@@ -1,0 +1,61 @@
+//! The sphere.
+
+use super::{SurfacePoint, clearance, quadric};
+use crate::lane::{Lane, Mask, Scalar};
+use crate::ray::{Ray, miss};
+use crate::scene;
+use crate::vector::Vector;
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sphere<S> {
+    pub(crate) center: Vector<S>,
+    pub(crate) radius: S,
+    radius_squared: S,
+}
+
+/// What all spheres ask of a ray.
+#[derive(Clone, Copy)]
+pub(crate) struct Aim<L> {
+    inverse_square: L,
+}
+
+impl<L: Lane> Aim<L> {
+    #[inline(always)]
+    pub(crate) fn new(ray: &Ray<L>) -> Self {
+        Self { inverse_square: L::literal(1.0) / ray.direction.dot(ray.direction) }
+    }
+}
+
+impl<S: Scalar> Sphere<S> {
+    pub(crate) fn new(sphere: &scene::Sphere) -> Self {
+        let radius = S::from_f64(sphere.radius);
+        Self { center: Vector::rounded(sphere.center), radius, radius_squared: radius * radius }
+    }
+
+    #[inline(always)]
+    pub(crate) fn intersect<L: Lane<Scalar = S>>(&self, ray: &Ray<L>, aim: &Aim<L>) -> L {
+        let zero = L::literal(0.0);
+        let radius_squared = L::splat(self.radius_squared);
+        let to_center = Vector::splat(self.center) - ray.origin;
+        let closest = to_center.dot(ray.direction) * aim.inverse_square;
+        let aside = to_center - ray.direction * closest;
+        let discriminant = radius_squared - aside.dot(aside);
+        let crossed = zero.le(discriminant);
+        if !crossed.any() {
+            return miss();
+        }
+        let power = to_center.dot(to_center) - radius_squared;
+        let (near, far) = quadric::roots(closest, discriminant, power, aim.inverse_square);
+        let t = L::select(zero.lt(near), near, far);
+        L::select(crossed & zero.lt(t), t, miss())
+    }
+
+    #[inline(always)]
+    pub(crate) fn surface<L: Lane<Scalar = S>>(&self, near: Vector<L>) -> SurfacePoint<L> {
+        let (center, radius) = (Vector::splat(self.center), L::splat(self.radius));
+        let normal = (near - center).unit();
+        let point = center + normal * radius;
+        let reach = center.abs() + Vector::new(radius, radius, radius);
+        SurfacePoint { point, normal, clearance: clearance(normal, point, reach) }
+    }
+}

@@ -1,0 +1,159 @@
+//! The colour that a ray brings back: Whitted's recursion (An Improved Illumination Model for
+//! Shaded Display, 1980) as a loop, since a mirror sends on just one ray.
+
+use crate::lane::{Lane, Mask, Scalar};
+use crate::material::{Finish, Light, Material, power};
+use crate::primitives::Primitives;
+use crate::ray::Ray;
+use crate::scene::Scene;
+use crate::shapes::SurfacePoint;
+use crate::vector::Vector;
+
+/// A scene in the precision of a picture, ready for rays.
+#[derive(Debug)]
+pub(crate) struct World<S> {
+    primitives: Primitives<S>,
+    materials: Vec<Material<S>>,
+    lights: Vec<Light<S>>,
+    background: Vector<S>,
+    max_reflections: u32,
+}
+
+/// A point to be lit: where, how it is turned, how it answers.
+struct Surface<L: Lane> {
+    at: SurfacePoint<L>,
+    finish: Finish<L>,
+}
+
+impl<S: Scalar> World<S> {
+    pub(crate) fn new(scene: &Scene) -> Self {
+        Self {
+            primitives: Primitives::new(scene),
+            materials: scene.materials.iter().map(Material::new).collect(),
+            lights: scene.lights.iter().map(Light::new).collect(),
+            background: Vector::rounded(scene.render.background),
+            max_reflections: scene.render.max_reflections,
+        }
+    }
+
+    /// The colour at the end of a ray of unit direction, in the lanes of `active`.
+    ///
+    /// Instead of `(1 - k) surface + k mirrored` from the last bounce back to the first, each
+    /// surface is added with the share that the mirrors before it left.
+    #[inline(always)]
+    pub(crate) fn trace<L: Lane<Scalar = S>>(&self, mut ray: Ray<L>, mut active: L::Mask) -> Vector<L> {
+        let (zero, one) = (L::literal(0.0), L::literal(1.0));
+        let mut color = Vector::zero();
+        let mut share = one;
+        for bounce in 0..=self.max_reflections {
+            let hit = self.primitives.nearest(&ray);
+            let missed = active & !hit.exists();
+            color = Vector::select(missed, color + Vector::splat(self.background) * share, color);
+            active = active & hit.exists();
+            if !active.any() {
+                break;
+            }
+            let surface = self.surface(hit.primitive, &ray, ray.at(hit.t), active);
+            let kept = one - surface.finish.reflection;
+            let lit = self.shade(&surface, &ray, active);
+            color = Vector::select(active, color + lit * (share * kept), color);
+            active = active & zero.lt(surface.finish.reflection);
+            if bounce == self.max_reflections || !active.any() {
+                break;
+            }
+            share = share * surface.finish.reflection;
+            ray = mirrored(&ray, &surface.at);
+        }
+        color
+    }
+
+    /// What is hit: each distinct primitive is looked up once, for all lanes that hit it.
+    #[inline(always)]
+    fn surface<L: Lane<Scalar = S>>(
+        &self,
+        primitives: L::Index,
+        ray: &Ray<L>,
+        near: Vector<L>,
+        active: L::Mask,
+    ) -> Surface<L> {
+        let look_up = |number: u32| {
+            let mut at = self.primitives.surface(number, near);
+            // Turned against the ray: surfaces have two sides.
+            let behind = L::literal(0.0).lt(at.normal.dot(ray.direction));
+            at.normal = Vector::select(behind, -at.normal, at.normal);
+            Surface { at, finish: Finish::splat(&self.materials[self.primitives.material(number)]) }
+        };
+        let mut surface: Option<Surface<L>> = None;
+        let mut todo = active;
+        while let Some(number) = L::first_index(todo, primitives) {
+            let here = L::index_equals(primitives, number);
+            let found = look_up(number);
+            surface = Some(match surface {
+                Some(others) => Surface::select(here, found, others),
+                None => found,
+            });
+            todo = todo & !here;
+        }
+        surface.unwrap_or_else(|| look_up(0))
+    }
+
+    /// Phong's sum over the lights that a point sees.
+    #[inline(always)]
+    fn shade<L: Lane<Scalar = S>>(&self, surface: &Surface<L>, ray: &Ray<L>, active: L::Mask) -> Vector<L> {
+        let (zero, two) = (L::literal(0.0), L::literal(2.0));
+        let Surface { at, finish } = surface;
+        let start = at.start();
+        let facing = at.normal.dot(ray.direction);
+        let mut color = finish.color * finish.ambient;
+        for light in &self.lights {
+            // Lit from where shadow rays start, which is on the viewer's side for certain: a light
+            // in the surface itself then stands below it, and no rounding makes it shine.
+            let toward = Vector::splat(light.position) - start;
+            let distance = toward.dot(toward).sqrt();
+            let to_light = toward * (L::literal(1.0) / distance);
+            let cosine = at.normal.dot(to_light);
+            let above = active & zero.lt(cosine);
+            if !above.any() {
+                continue;
+            }
+            let shadow_ray = Ray { origin: start, direction: toward };
+            let lit = above & !self.primitives.blocked(&shadow_ray, before_light(), above);
+            if !lit.any() {
+                continue;
+            }
+            // m . -d with m = 2 (n . l) n - l.
+            let mirror_cosine = to_light.dot(ray.direction) - two * cosine * facing;
+            let highlight = power(mirror_cosine.max(zero), finish.shininess, lit);
+            let answer = finish.color * (finish.diffuse * cosine)
+                + Vector::new(highlight, highlight, highlight) * finish.specular;
+            color = Vector::select(lit, color + Vector::splat(light.intensity).scale(answer), color);
+        }
+        color
+    }
+}
+
+impl<L: Lane> Surface<L> {
+    #[inline(always)]
+    fn select(mask: L::Mask, yes: Self, no: Self) -> Self {
+        Self {
+            at: SurfacePoint::select(mask, yes.at, no.at),
+            finish: Finish::select(mask, yes.finish, no.finish),
+        }
+    }
+}
+
+/// The end of a shadow ray whose direction reaches to the light: a little before it, so that a
+/// surface that passes through the light does not hide it. 256 roundings cover the error of `t` in
+/// a surface that the ray meets at an angle above about a hundredth.
+#[inline(always)]
+fn before_light<L: Lane>() -> L {
+    L::literal(1.0 - 256.0 * L::Scalar::ROUNDOFF)
+}
+
+/// The ray that a mirror sends on, of unit direction: the error of each bounce is not kept.
+#[inline(always)]
+fn mirrored<L: Lane>(ray: &Ray<L>, at: &SurfacePoint<L>) -> Ray<L> {
+    let along = at.normal.dot(ray.direction);
+    let direction = ray.direction - at.normal * (along + along);
+    Ray { origin: at.start(), direction: direction.unit() }
+}

@@ -1,0 +1,100 @@
+//! Vectors of three numbers, each of them a [`Lane`].
+
+use crate::lane::{Lane, Scalar};
+use glam::DVec3;
+use std::ops::{Add, Mul, Neg, Sub};
+
+/// A point, a direction or a colour.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Vector<L> {
+    pub(crate) x: L,
+    pub(crate) y: L,
+    pub(crate) z: L,
+}
+
+impl<L: Lane> Vector<L> {
+    #[inline(always)]
+    pub(crate) fn new(x: L, y: L, z: L) -> Self {
+        Self { x, y, z }
+    }
+
+    #[inline(always)]
+    pub(crate) fn splat(v: Vector<L::Scalar>) -> Self {
+        Self::new(L::splat(v.x), L::splat(v.y), L::splat(v.z))
+    }
+
+    #[inline(always)]
+    pub(crate) fn zero() -> Self {
+        Self::new(L::literal(0.0), L::literal(0.0), L::literal(0.0))
+    }
+
+    /// The sum is taken from x to z: an order that no lane or compiler may change.
+    #[inline(always)]
+    pub(crate) fn dot(self, other: Self) -> L {
+        self.x * other.x + self.y * other.y + self.z * other.z
+    }
+
+    /// Component by component.
+    #[inline(always)]
+    pub(crate) fn scale(self, other: Self) -> Self {
+        Self::new(self.x * other.x, self.y * other.y, self.z * other.z)
+    }
+
+    #[inline(always)]
+    pub(crate) fn abs(self) -> Self {
+        Self::new(self.x.abs(), self.y.abs(), self.z.abs())
+    }
+
+    #[inline(always)]
+    pub(crate) fn unit(self) -> Self {
+        self * (L::literal(1.0) / self.dot(self).sqrt())
+    }
+
+    #[inline(always)]
+    pub(crate) fn select(mask: L::Mask, yes: Self, no: Self) -> Self {
+        Self::new(L::select(mask, yes.x, no.x), L::select(mask, yes.y, no.y), L::select(mask, yes.z, no.z))
+    }
+}
+
+impl<S: Scalar> Vector<S> {
+    /// Each component rounded.
+    pub(crate) fn rounded(v: DVec3) -> Self {
+        Self::new(S::from_f64(v.x), S::from_f64(v.y), S::from_f64(v.z))
+    }
+
+    pub(crate) fn widened(self) -> DVec3 {
+        DVec3::new(self.x.to_f64(), self.y.to_f64(), self.z.to_f64())
+    }
+}
+
+impl<L: Lane> Add for Vector<L> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self::new(self.x + other.x, self.y + other.y, self.z + other.z)
+    }
+}
+
+impl<L: Lane> Sub for Vector<L> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self::new(self.x - other.x, self.y - other.y, self.z - other.z)
+    }
+}
+
+impl<L: Lane> Mul<L> for Vector<L> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, factor: L) -> Self {
+        Self::new(self.x * factor, self.y * factor, self.z * factor)
+    }
+}
+
+impl<L: Lane> Neg for Vector<L> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self::new(-self.x, -self.y, -self.z)
+    }
+}
