@@ -1,2 +1,77 @@
-//! stub
-fn main() {}
+//! `rayweave`: proves that all strategies draw the same picture, and measures what each costs.
+//!
+//! The glue between the other crates, and the only place that prints: results to standard output,
+//! errors and progress to standard error. Exit status: 0 done and all checks held; 1 a check
+//! failed; 2 the request or its input was wrong.
+
+mod commands;
+mod input;
+mod options;
+mod output;
+mod picture;
+mod progress;
+
+use clap::{Parser, Subcommand};
+use commands::{check, compare, render, strategies};
+use std::io::{self, Write};
+use std::process::ExitCode;
+
+/// Spreads a ray tracer over threads in several ways, proves that all draw the same picture, and
+/// measures what each costs. Without a command: compare on the report's scene.
+#[derive(Parser)]
+#[command(version, args_conflicts_with_subcommands = true)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+    #[command(flatten)]
+    compare: compare::Options,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// List the strategies, and why one is unavailable here
+    Strategies,
+    /// Render a picture to a .png, .ppm or .exr file
+    Render(render::Arguments),
+    /// Prove that all strategies draw the same picture, bit for bit
+    Check(check::Arguments),
+    /// Time the strategies side by side and print the table (the default)
+    Compare(compare::Arguments),
+}
+
+/// Whether the checks that a command makes held.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Outcome {
+    Held,
+    Failed,
+}
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let result = match cli.command {
+        Some(Command::Strategies) => strategies::run(),
+        Some(Command::Render(arguments)) => render::run(&arguments),
+        Some(Command::Check(arguments)) => check::run(&arguments),
+        Some(Command::Compare(arguments)) => compare::run(arguments.scene.as_deref(), &arguments.options),
+        None => compare::run(None, &cli.compare),
+    };
+    match result {
+        Ok(Outcome::Held) => ExitCode::SUCCESS,
+        Ok(Outcome::Failed) => ExitCode::from(1),
+        Err(message) => {
+            // Nobody is left to tell if standard error is closed.
+            let _ = writeln!(io::stderr(), "error: {message}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// Prints a result. A reader that has seen enough (`rayweave strategies | head -1`) is no failure.
+fn print(text: &str) -> Result<(), String> {
+    match io::stdout().lock().write_all(text.as_bytes()).and_then(|()| io::stdout().flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(format!("cannot write to standard output: {error}"))
+        }
+        _ => Ok(()),
+    }
+}

@@ -21,3 +21,9 @@ pub fn reference() -> &'static dyn Strategy {
 pub fn find(name: &str) -> Option<&'static dyn Strategy> {
     STRATEGIES.iter().copied().find(|strategy| strategy.name() == name)
 }
+
+/// The strategy for who just wants the picture.
+#[must_use]
+pub fn recommended() -> &'static dyn Strategy {
+    &rayweave_tile_queue::TileQueue
+}

@@ -1,0 +1,99 @@
+//! `rayweave check`: proof that all strategies draw the same picture.
+
+use crate::input::Input;
+use crate::options::{SceneOptions, all_threads, parse_strategy, parse_threads};
+use crate::{Outcome, output, print, progress};
+use clap::Args;
+use rayweave_core::Strategy;
+use rayweave_measure::check::{Case, Check, Verdict};
+use rayweave_measure::computing_threads::TIMEOUT;
+use rayweave_measure::machine::Machine;
+use rayweave_registry::STRATEGIES;
+use rayweave_report as report;
+use std::num::{NonZeroU32, NonZeroUsize};
+use std::path::PathBuf;
+
+#[derive(Args)]
+pub struct Arguments {
+    /// Scene file [default: the report's scene, built in]
+    scene: Option<PathBuf>,
+    /// Strategies to check [default: all]
+    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = parse_strategy)]
+    strategy: Vec<&'static dyn Strategy>,
+    /// Numbers of computing threads [default: 1, 2, 3, all, and twice as many]
+    #[arg(long, value_name = "N", value_delimiter = ',', value_parser = parse_threads)]
+    threads: Vec<NonZeroUsize>,
+    /// Sides of a tile in pixels [default: 1, 7 and 32 for awkward sizes, 32 for the full size]
+    #[arg(long, value_name = "N", value_delimiter = ',')]
+    tile: Vec<NonZeroU32>,
+    /// Write the result as JSON
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    #[command(flatten)]
+    options: SceneOptions,
+}
+
+/// Pictures in which rows, columns or tiles come out uneven, or there are fewer pixels than threads.
+const AWKWARD_SIZES: [(u32, u32); 5] = [(1, 1), (1, 50), (50, 1), (7, 3), (97, 61)];
+
+pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
+    arguments.json.as_deref().map_or(Ok(()), output::check_writable)?;
+    let input = Input::load(arguments.scene.as_deref(), &arguments.options)?;
+    let strategies = if arguments.strategy.is_empty() { STRATEGIES } else { &arguments.strategy };
+    let threads = or_default(&arguments.threads, default_threads);
+
+    let mut verdict = Verdict { compared: 0, findings: Vec::new() };
+    let mut check = |sizes: &[(u32, u32)], tiles: &[u32]| -> Result<(), String> {
+        let cases = sizes.iter().map(|&size| case(&input, size)).collect::<Result<Vec<_>, _>>()?;
+        let tiles =
+            or_default(&arguments.tile, || tiles.iter().copied().filter_map(NonZeroU32::new).collect());
+        let part = run_with_bar(&Check {
+            reference: rayweave_registry::reference(),
+            strategies,
+            cases: &cases,
+            threads: &threads,
+            tiles: &tiles,
+            timeout: TIMEOUT,
+        })?;
+        verdict.compared += part.compared;
+        verdict.findings.extend(part.findings);
+        Ok(())
+    };
+    check(&AWKWARD_SIZES, &[1, 7, 32])?;
+    check(&[(input.width, input.height)], &[32])?;
+
+    let machine = Machine::here();
+    let facts = report::machine::line(&machine);
+    print(&format!("{}\n{facts}\n\n{}\n", input.describe(), report::check::text(&verdict).trim_end()))?;
+    if let Some(path) = &arguments.json {
+        output::write(path, report::check::json(&verdict, &machine).as_bytes())?;
+    }
+    Ok(if verdict.holds() { Outcome::Held } else { Outcome::Failed })
+}
+
+fn run_with_bar(check: &Check<'_>) -> Result<Verdict, String> {
+    let bar = progress::bar(0);
+    let verdict = check.run(|progress| {
+        bar.set_length(progress.total as u64);
+        bar.set_position(progress.done as u64);
+        bar.set_message(format!("{}, threads: {}", progress.strategy, progress.threads));
+    });
+    bar.finish_and_clear();
+    verdict.map_err(|e| e.to_string())
+}
+
+fn case(input: &Input, (width, height): (u32, u32)) -> Result<Case<'static>, String> {
+    Ok(Case { name: input.name.clone(), width, height, work: input.work(width, height)? })
+}
+
+fn default_threads() -> Vec<NonZeroUsize> {
+    let all = all_threads().get();
+    let mut counts = vec![1, 2, 3, all, 2 * all];
+    counts.sort_unstable();
+    counts.dedup();
+    counts.into_iter().filter_map(NonZeroUsize::new).collect()
+}
+
+fn or_default<T: Copy>(given: &[T], default: impl Fn() -> Vec<T>) -> Vec<T> {
+    if given.is_empty() { default() } else { given.to_vec() }
+}

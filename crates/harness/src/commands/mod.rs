@@ -1,0 +1,6 @@
+//! One file a subcommand.
+
+pub mod check;
+pub mod compare;
+pub mod render;
+pub mod strategies;

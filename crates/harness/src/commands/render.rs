@@ -1,0 +1,69 @@
+//! `rayweave render`: a picture.
+
+use crate::input::Input;
+use crate::options::{SceneOptions, TileOption, all_threads, parse_strategy, parse_threads};
+use crate::picture::Format;
+use crate::progress::Watched;
+use crate::{Outcome, output, print};
+use clap::Args;
+use rayweave_core::{Plan, Strategy};
+use rayweave_measure::machine::Machine;
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+#[derive(Args)]
+pub struct Arguments {
+    /// Scene file [default: the report's scene, built in]
+    scene: Option<PathBuf>,
+    /// Picture to write: .png, .ppm or .exr (linear floats) [default: the scene's name, .png]
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Strategy to render with [default: the recommended one]
+    #[arg(long, value_name = "NAME", value_parser = parse_strategy)]
+    strategy: Option<&'static dyn Strategy>,
+    /// Number of computing threads [default: what the machine and its quota allow]
+    #[arg(long, value_name = "N", value_parser = parse_threads)]
+    threads: Option<NonZeroUsize>,
+    #[command(flatten)]
+    tile: TileOption,
+    #[command(flatten)]
+    options: SceneOptions,
+}
+
+pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
+    let path = arguments.output.clone().unwrap_or_else(|| default_output(arguments.scene.as_deref()));
+    let format = Format::of(&path)?;
+    output::check_writable(&path)?;
+    let input = Input::load(arguments.scene.as_deref(), &arguments.options)?;
+
+    let strategy = arguments.strategy.unwrap_or_else(rayweave_registry::recommended);
+    let threads = arguments.threads.unwrap_or_else(all_threads);
+    let plan = Plan { threads, tile: arguments.tile.tile };
+    let mut picture = input.picture()?;
+    let work = input.work(input.width, input.height)?;
+    let mut renderer = strategy.prepare(plan).map_err(|e| e.to_string())?;
+    let watched = Watched::new(&*work, picture.pixels().len() as u64);
+    let begin = Instant::now();
+    let result = renderer.render(&watched, &mut picture);
+    let seconds = begin.elapsed().as_secs_f64();
+    watched.finish();
+    result.map_err(|e| e.to_string())?;
+
+    output::write(&path, &format.encode(&picture)?)?;
+    print(&format!(
+        "{}\n{}, threads: {threads}, {seconds:.3} s, digest {}\n{}\nwritten to {}\n",
+        input.describe(),
+        strategy.name(),
+        picture.digest().short(),
+        rayweave_report::machine::line(&Machine::here()),
+        path.display(),
+    ))?;
+    Ok(Outcome::Held)
+}
+
+/// In the working folder, named after the scene.
+fn default_output(scene: Option<&Path>) -> PathBuf {
+    let stem = scene.and_then(Path::file_stem).unwrap_or("report".as_ref());
+    Path::new(stem).with_extension("png")
+}

@@ -1,0 +1,59 @@
+//! From the options to a scene that is ready to be rendered.
+
+use crate::options::{PrecisionOption, SceneOptions};
+use rayweave_core::image::ImageError;
+use rayweave_core::precision::Demand;
+use rayweave_core::{Image, Precision, Scene, Work, tracer};
+use rayweave_scene_file as scene_file;
+use std::path::Path;
+
+/// A scene with the command line's overrides.
+pub struct Input {
+    /// What results call it.
+    pub name: String,
+    pub scene: Scene,
+    /// In pixels.
+    pub width: u32,
+    /// In pixels.
+    pub height: u32,
+    pub precision: Precision,
+    /// Why this precision.
+    pub reason: String,
+}
+
+impl Input {
+    /// Loads the scene at `path`, or takes the report's.
+    pub fn load(path: Option<&Path>, options: &SceneOptions) -> Result<Self, String> {
+        let (name, file) = match path {
+            Some(path) => (path.display().to_string(), scene_file::load(path).map_err(|e| e.to_string())?),
+            None => ("report (built in)".to_owned(), scene_file::report_scene()),
+        };
+        let mut scene = file.scene;
+        let (width, height) = options.size.unwrap_or((file.image.width, file.image.height));
+        scene.render.antialiasing = options.antialiasing.unwrap_or(scene.render.antialiasing);
+        let demand = Demand::of(&scene);
+        let (precision, reason) = match options.precision {
+            PrecisionOption::Auto => (demand.precision(), demand.to_string()),
+            PrecisionOption::F32 => (Precision::F32, "as asked for".to_owned()),
+            PrecisionOption::F64 => (Precision::F64, "as asked for".to_owned()),
+        };
+        Ok(Self { name, scene, width, height, precision, reason })
+    }
+
+    /// The work of rendering the scene at this size.
+    pub fn work(&self, width: u32, height: u32) -> Result<Box<dyn Work + Send>, String> {
+        tracer(&self.scene, width, height, self.precision).map_err(|e| format!("{}: {e}", self.name))
+    }
+
+    /// A black picture of the size asked for.
+    pub fn picture(&self) -> Result<Image, String> {
+        Image::new(self.width, self.height).map_err(|e: ImageError| e.to_string())
+    }
+
+    /// One line that says what is rendered.
+    pub fn describe(&self) -> String {
+        let Self { name, width, height, precision, reason, .. } = self;
+        let antialiasing = self.scene.render.antialiasing;
+        format!("{name}, {width} x {height}, antialiasing {antialiasing}, {precision} ({reason})")
+    }
+}

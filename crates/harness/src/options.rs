@@ -1,0 +1,85 @@
+//! The options that several commands share, and how their values are read.
+
+use clap::{Args, ValueEnum};
+use rayweave_core::Strategy;
+use rayweave_core::scene::MAX_ANTIALIASING;
+use rayweave_registry::STRATEGIES;
+use std::num::{NonZeroU32, NonZeroUsize};
+use std::thread::available_parallelism;
+
+/// The most threads that may be asked for.
+const MAX_THREADS: usize = 1024;
+
+/// What is rendered.
+#[derive(Args)]
+pub struct SceneOptions {
+    /// Size of the picture in pixels, each 1..=65535 [default: the scene's]
+    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    pub size: Option<(u32, u32)>,
+    /// Lattice density: 0 for one ray a pixel, else N for (2 N + 1)^2 [default: the scene's]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=i64::from(MAX_ANTIALIASING)))]
+    pub antialiasing: Option<u32>,
+    /// Number type of the tracer
+    #[arg(long, value_enum, default_value_t)]
+    pub precision: PrecisionOption,
+    /// Numbers computed side by side; this version computes them one by one
+    #[arg(long, value_enum, default_value_t)]
+    pub lanes: LanesOption,
+}
+
+/// The number type of the tracer, or the wish to have it chosen.
+#[derive(Clone, Copy, Default, ValueEnum)]
+pub enum PrecisionOption {
+    /// What the scene needs
+    #[default]
+    Auto,
+    /// 24 binary digits
+    F32,
+    /// 53 binary digits
+    F64,
+}
+
+/// How many numbers an instruction computes.
+#[derive(Clone, Copy, Default, ValueEnum)]
+pub enum LanesOption {
+    /// The best there is
+    #[default]
+    Auto,
+    /// One by one
+    #[value(name = "1")]
+    One,
+}
+
+/// The size of the tiles.
+#[derive(Args)]
+pub struct TileOption {
+    /// Side of a tile in pixels, for the strategies that deal in tiles
+    #[arg(long, value_name = "N", default_value = "32")]
+    pub tile: NonZeroU32,
+}
+
+/// A strategy by its name, for clap.
+pub fn parse_strategy(name: &str) -> Result<&'static dyn Strategy, String> {
+    rayweave_registry::find(name).ok_or_else(|| {
+        let names: Vec<&str> = STRATEGIES.iter().map(|strategy| strategy.name()).collect();
+        format!("there is no such strategy; there are {}", names.join(", "))
+    })
+}
+
+/// A number of threads, for clap.
+pub fn parse_threads(text: &str) -> Result<NonZeroUsize, String> {
+    let threads = text.parse().ok().filter(|threads| (1..=MAX_THREADS).contains(threads));
+    threads.and_then(NonZeroUsize::new).ok_or_else(|| format!("expected an integer in 1..={MAX_THREADS}"))
+}
+
+/// The number of threads that the machine and this process's quota allow.
+pub fn all_threads() -> NonZeroUsize {
+    available_parallelism().unwrap_or(NonZeroUsize::MIN)
+}
+
+fn parse_size(text: &str) -> Result<(u32, u32), String> {
+    let side = |text: &str| text.parse().ok().filter(|side| (1..=u32::from(u16::MAX)).contains(side));
+    text.split_once('x')
+        .and_then(|(width, height)| Some((side(width)?, side(height)?)))
+        .ok_or_else(|| "expected WIDTHxHEIGHT, each an integer in 1..=65535, as in 640x480".to_owned())
+}

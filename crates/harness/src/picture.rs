@@ -1,0 +1,104 @@
+//! Pictures as files.
+
+use image::codecs::openexr::OpenExrEncoder;
+use image::codecs::png::PngEncoder;
+use image::codecs::pnm::{PnmEncoder, PnmSubtype, SampleEncoding};
+use image::{ExtendedColorType, ImageEncoder, ImageResult};
+use rayweave_core::Image;
+use std::io::Cursor;
+use std::path::Path;
+
+/// A file format.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// 8 bits a channel.
+    Png,
+    /// 8 bits a channel, uncompressed.
+    Ppm,
+    /// The linear floats as they are.
+    Exr,
+}
+
+impl Format {
+    /// By the file's extension.
+    pub fn of(path: &Path) -> Result<Self, String> {
+        let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
+        match extension.as_str() {
+            "png" => Ok(Self::Png),
+            "ppm" => Ok(Self::Ppm),
+            "exr" => Ok(Self::Exr),
+            _ => Err(format!("{}: a picture's name ends in .png, .ppm or .exr", path.display())),
+        }
+    }
+
+    /// The contents of the file.
+    pub fn encode(self, picture: &Image) -> Result<Vec<u8>, String> {
+        let mut file = Cursor::new(Vec::new());
+        let (width, height) = (picture.width(), picture.height());
+        let result: ImageResult<()> = match self {
+            Self::Png => PngEncoder::new(&mut file).write_image(
+                &bytes(picture),
+                width,
+                height,
+                ExtendedColorType::Rgb8,
+            ),
+            Self::Ppm => PnmEncoder::new(&mut file)
+                .with_subtype(PnmSubtype::Pixmap(SampleEncoding::Binary))
+                .write_image(&bytes(picture), width, height, ExtendedColorType::Rgb8),
+            Self::Exr => {
+                // The encoder takes the floats as bytes in the machine's order.
+                let floats: Vec<u8> =
+                    picture.pixels().as_flattened().iter().flat_map(|c| c.to_ne_bytes()).collect();
+                OpenExrEncoder::new(&mut file).write_image(&floats, width, height, ExtendedColorType::Rgb32F)
+            }
+        };
+        result.map_err(|e| format!("the picture cannot be encoded: {e}"))?;
+        Ok(file.into_inner())
+    }
+}
+
+/// Each channel as `floor(255 clamp(c, 0, 1) + 0.5)`, without gamma.
+fn bytes(picture: &Image) -> Vec<u8> {
+    let byte = |channel: &f32| (255.0 * f64::from(*channel).clamp(0.0, 1.0) + 0.5).floor() as u8;
+    picture.pixels().as_flattened().iter().map(byte).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn picture() -> Image {
+        let mut picture = Image::new(2, 1).expect("a small picture");
+        // 0.5 is 127.5 + 0.5; 0.1 is 25.5 + 0.5; NaN has no colour.
+        picture.pixels_mut().copy_from_slice(&[[0.5, -1.0, 2.0], [0.1, f32::NAN, 0.998]]);
+        picture
+    }
+
+    #[test]
+    fn eight_bits_are_rounded_half_up_and_clamped() {
+        assert_eq!(bytes(&picture()), [128, 0, 255, 26, 0, 254]);
+    }
+
+    #[test]
+    fn a_ppm_is_a_header_and_the_bytes() {
+        let file = Format::Ppm.encode(&picture()).expect("encodes");
+        assert_eq!(file, b"P6\n2 1\n255\n\x80\x00\xff\x1a\x00\xfe");
+    }
+
+    #[test]
+    fn an_exr_keeps_every_bit() {
+        let mut picture = picture();
+        picture.pixels_mut()[1] = [1e-30, 3.5, 0.1];
+        let file = Format::Exr.encode(&picture).expect("encodes");
+        let decoded = image::load_from_memory(&file).expect("decodes").into_rgb32f();
+        let bits = |floats: &[f32]| floats.iter().map(|c| c.to_bits()).collect::<Vec<_>>();
+        assert_eq!(bits(decoded.as_raw()), bits(picture.pixels().as_flattened()));
+    }
+
+    #[test]
+    fn the_extension_decides() {
+        assert_eq!(Format::of(Path::new("a.b/c.PNG")), Ok(Format::Png));
+        assert!(Format::of(Path::new("png")).is_err());
+        assert!(Format::of(Path::new("a.jpg")).is_err());
+    }
+}

@@ -1,0 +1,41 @@
+//! How far it is, for who watches a terminal; nobody else sees anything of it.
+
+use indicatif::{ProgressBar, ProgressStyle};
+use rayweave_core::{Tile, Work};
+use std::time::Duration;
+
+/// A bar on standard error, if that is a terminal.
+pub fn bar(total: u64) -> ProgressBar {
+    let style = ProgressStyle::with_template("{bar:32} {percent:>3} %  {msg}  {eta} left")
+        .unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::new(total).with_style(style)
+}
+
+/// Work that tells a bar how many pixels are done.
+pub struct Watched<'a, W: ?Sized> {
+    work: &'a W,
+    bar: ProgressBar,
+}
+
+impl<'a, W: Work + ?Sized> Watched<'a, W> {
+    /// Shows `work`, which computes `pixels` pixels.
+    pub fn new(work: &'a W, pixels: u64) -> Self {
+        let bar = bar(pixels);
+        // Drawn by a thread of its own ten times a second: one slow tile does not stop the clock.
+        bar.enable_steady_tick(Duration::from_millis(100));
+        Self { work, bar }
+    }
+
+    /// Takes the bar away.
+    pub fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+impl<W: Work + ?Sized> Work for Watched<'_, W> {
+    fn render(&self, tile: &mut Tile<'_>) {
+        self.work.render(tile);
+        let area = tile.area();
+        self.bar.inc(u64::from(area.width) * u64::from(area.height));
+    }
+}
