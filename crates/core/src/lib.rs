@@ -3,15 +3,18 @@
 //! * The contract: [`Image`] and [`Tile`], [`Work`], [`Strategy`].
 //! * What is drawn: [`Scene`], in `f64`.
 //! * The tracer: [`tracer()`] turns a scene into [`Work`]. Inside, a formula is written once over a
-//!   number type ([`lane`]); `primitives` finds what a ray hits, `trace` what colour that gives,
+//!   number type (`lane`); `primitives` finds what a ray hits, `trace` what colour that gives,
 //!   `tracer` filters samples into pixels.
 //!
 //! This crate starts no thread, opens no file and reads no clock.
 
 mod antialiasing;
 mod camera;
+pub mod cast;
 pub mod image;
-pub mod lane;
+mod lane;
+#[cfg(test)]
+mod lane_identity;
 mod material;
 pub mod precision;
 mod primitives;

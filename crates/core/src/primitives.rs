@@ -144,9 +144,19 @@ impl<S: Scalar> Primitives<S> {
         self.materials[number as usize]
     }
 
+    /// The point of primitive `number` that the ray hits at `t`, the normal turned against the ray:
+    /// surfaces have two sides.
+    #[inline(always)]
+    pub(crate) fn surface<L: Lane<Scalar = S>>(&self, number: u32, ray: &Ray<L>, t: L) -> SurfacePoint<L> {
+        let mut at = self.surface_near(number, ray.at(t));
+        let behind = L::literal(0.0).lt(at.normal.dot(ray.direction));
+        at.normal = Vector::select(behind, -at.normal, at.normal);
+        at
+    }
+
     /// The point of primitive `number` next to `near`, and its normal there.
     #[inline(always)]
-    pub(crate) fn surface<L: Lane<Scalar = S>>(&self, number: u32, near: Vector<L>) -> SurfacePoint<L> {
+    fn surface_near<L: Lane<Scalar = S>>(&self, number: u32, near: Vector<L>) -> SurfacePoint<L> {
         let mut index = number as usize;
         if let Some(plane) = self.planes.get(index) {
             return plane.surface(near);

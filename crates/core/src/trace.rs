@@ -3,7 +3,7 @@
 
 use crate::lane::{Lane, Mask, Scalar};
 use crate::material::{Finish, Light, Material, power};
-use crate::primitives::Primitives;
+use crate::primitives::{Hit, Primitives};
 use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::shapes::SurfacePoint;
@@ -53,7 +53,7 @@ impl<S: Scalar> World<S> {
             if !active.any() {
                 break;
             }
-            let surface = self.surface(hit.primitive, &ray, ray.at(hit.t), active);
+            let surface = self.surface(&hit, &ray, active);
             let kept = one - surface.finish.reflection;
             let lit = self.shade(&surface, &ray, active);
             color = Vector::select(active, color + lit * (share * kept), color);
@@ -69,24 +69,15 @@ impl<S: Scalar> World<S> {
 
     /// What is hit: each distinct primitive is looked up once, for all lanes that hit it.
     #[inline(always)]
-    fn surface<L: Lane<Scalar = S>>(
-        &self,
-        primitives: L::Index,
-        ray: &Ray<L>,
-        near: Vector<L>,
-        active: L::Mask,
-    ) -> Surface<L> {
+    fn surface<L: Lane<Scalar = S>>(&self, hit: &Hit<L>, ray: &Ray<L>, active: L::Mask) -> Surface<L> {
         let look_up = |number: u32| {
-            let mut at = self.primitives.surface(number, near);
-            // Turned against the ray: surfaces have two sides.
-            let behind = L::literal(0.0).lt(at.normal.dot(ray.direction));
-            at.normal = Vector::select(behind, -at.normal, at.normal);
+            let at = self.primitives.surface(number, ray, hit.t);
             Surface { at, finish: Finish::splat(&self.materials[self.primitives.material(number)]) }
         };
         let mut surface: Option<Surface<L>> = None;
         let mut todo = active;
-        while let Some(number) = L::first_index(todo, primitives) {
-            let here = L::index_equals(primitives, number);
+        while let Some(number) = L::first_index(todo, hit.primitive) {
+            let here = L::index_equals(hit.primitive, number);
             let found = look_up(number);
             surface = Some(match surface {
                 Some(others) => Surface::select(here, found, others),

@@ -20,7 +20,8 @@ pub struct Arguments {
     /// Strategies to check [default: all]
     #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = parse_strategy)]
     strategy: Vec<&'static dyn Strategy>,
-    /// Numbers of computing threads [default: 1, 2, 3, all, and twice as many]
+    /// Numbers of computing threads [default: 1, 2, 3, all and twice as many for awkward sizes,
+    /// all for the full size]
     #[arg(long, value_name = "N", value_delimiter = ',', value_parser = parse_threads)]
     threads: Vec<NonZeroUsize>,
     /// Sides of a tile in pixels [default: 1, 7 and 32 for awkward sizes, 32 for the full size]
@@ -40,13 +41,12 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     arguments.json.as_deref().map_or(Ok(()), output::check_writable)?;
     let input = Input::load(arguments.scene.as_deref(), &arguments.options)?;
     let strategies = if arguments.strategy.is_empty() { STRATEGIES } else { &arguments.strategy };
-    let threads = or_default(&arguments.threads, default_threads);
 
     let mut verdict = Verdict { compared: 0, findings: Vec::new() };
-    let mut check = |sizes: &[(u32, u32)], tiles: &[u32]| -> Result<(), String> {
+    let mut check = |sizes: &[(u32, u32)], threads: &[usize], tiles: &[u32]| -> Result<(), String> {
         let cases = sizes.iter().map(|&size| case(&input, size)).collect::<Result<Vec<_>, _>>()?;
-        let tiles =
-            or_default(&arguments.tile, || tiles.iter().copied().filter_map(NonZeroU32::new).collect());
+        let threads = or_default(&arguments.threads, threads.iter().copied().filter_map(NonZeroUsize::new));
+        let tiles = or_default(&arguments.tile, tiles.iter().copied().filter_map(NonZeroU32::new));
         let part = run_with_bar(&Check {
             reference: rayweave_registry::reference(),
             strategies,
@@ -59,11 +59,15 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
         verdict.findings.extend(part.findings);
         Ok(())
     };
-    check(&AWKWARD_SIZES, &[1, 7, 32])?;
-    check(&[(input.width, input.height)], &[32])?;
+    let all = all_threads().get();
+    let mut counts = vec![1, 2, 3, all, 2 * all];
+    counts.sort_unstable();
+    counts.dedup();
+    check(&AWKWARD_SIZES, &counts, &[1, 7, 32])?;
+    check(&[(input.width, input.height)], &[all], &[32])?;
 
     let machine = Machine::here();
-    let facts = report::machine::line(&machine);
+    let facts = report::machine::text(&machine);
     print(&format!("{}\n{facts}\n\n{}\n", input.describe(), report::check::text(&verdict).trim_end()))?;
     if let Some(path) = &arguments.json {
         output::write(path, report::check::json(&verdict, &machine).as_bytes())?;
@@ -86,14 +90,6 @@ fn case(input: &Input, (width, height): (u32, u32)) -> Result<Case<'static>, Str
     Ok(Case { name: input.name.clone(), width, height, work: input.work(width, height)? })
 }
 
-fn default_threads() -> Vec<NonZeroUsize> {
-    let all = all_threads().get();
-    let mut counts = vec![1, 2, 3, all, 2 * all];
-    counts.sort_unstable();
-    counts.dedup();
-    counts.into_iter().filter_map(NonZeroUsize::new).collect()
-}
-
-fn or_default<T: Copy>(given: &[T], default: impl Fn() -> Vec<T>) -> Vec<T> {
-    if given.is_empty() { default() } else { given.to_vec() }
+fn or_default<T: Copy>(given: &[T], default: impl Iterator<Item = T>) -> Vec<T> {
+    if given.is_empty() { default.collect() } else { given.to_vec() }
 }

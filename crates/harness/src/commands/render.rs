@@ -56,7 +56,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
         input.describe(),
         strategy.name(),
         picture.digest().short(),
-        rayweave_report::machine::line(&Machine::here()),
+        rayweave_report::machine::text(&Machine::here()),
         path.display(),
     ))?;
     Ok(Outcome::Held)

@@ -1,0 +1,82 @@
+//! Single rays through the kernel that renders, for tests and for whoever studies it.
+
+use crate::lane::Scalar;
+use crate::precision::Precision;
+use crate::primitives::Primitives;
+use crate::ray::Ray;
+use crate::scene::{Scene, SceneError};
+use crate::trace::World;
+use crate::vector::Vector;
+use glam::DVec3;
+
+/// Where a ray hits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// In units of the ray's direction, above 0.
+    pub t: f64,
+    /// The primitive's number: planes, spheres, triangles, cylinders, each in file order, from 0.
+    pub primitive: usize,
+    /// The point, moved onto the surface.
+    pub point: DVec3,
+    /// The unit normal, turned against the ray.
+    pub normal: DVec3,
+}
+
+/// The nearest hit of the ray from `origin` in `direction`, which may have any length. All numbers
+/// are first rounded to `precision`.
+///
+/// # Errors
+///
+/// A scene that [`Scene::check`] rejects.
+pub fn nearest_hit(
+    scene: &Scene,
+    origin: DVec3,
+    direction: DVec3,
+    precision: Precision,
+) -> Result<Option<Hit>, SceneError> {
+    scene.check()?;
+    Ok(match precision {
+        Precision::F32 => nearest_hit_in::<f32>(scene, origin, direction),
+        Precision::F64 => nearest_hit_in::<f64>(scene, origin, direction),
+    })
+}
+
+fn nearest_hit_in<S: Scalar>(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<Hit> {
+    let ray = Ray::<S> { origin: Vector::rounded(origin), direction: Vector::rounded(direction) };
+    let primitives = Primitives::new(scene);
+    let hit = primitives.nearest(&ray);
+    hit.exists().then(|| {
+        let at = primitives.surface(hit.primitive, &ray, hit.t);
+        Hit {
+            t: hit.t.to_f64(),
+            primitive: hit.primitive as usize,
+            point: at.point.widened(),
+            normal: at.normal.widened(),
+        }
+    })
+}
+
+/// The colour, linear and not clamped, that comes back along the ray from `origin` in `direction`,
+/// which is made unit. All numbers are first rounded to `precision`.
+///
+/// # Errors
+///
+/// A scene that [`Scene::check`] rejects.
+pub fn color(
+    scene: &Scene,
+    origin: DVec3,
+    direction: DVec3,
+    precision: Precision,
+) -> Result<[f64; 3], SceneError> {
+    scene.check()?;
+    Ok(match precision {
+        Precision::F32 => color_in::<f32>(scene, origin, direction),
+        Precision::F64 => color_in::<f64>(scene, origin, direction),
+    })
+}
+
+fn color_in<S: Scalar>(scene: &Scene, origin: DVec3, direction: DVec3) -> [f64; 3] {
+    let direction = Vector::<S>::rounded(direction).unit();
+    let color = World::new(scene).trace(Ray { origin: Vector::rounded(origin), direction }, true);
+    color.widened().to_array()
+}
