@@ -82,7 +82,7 @@ mod tests {
     #[test]
     fn a_ppm_is_a_header_and_the_bytes() {
         let file = Format::Ppm.encode(&picture()).expect("encodes");
-        assert_eq!(file, b"P6\n2 1\n255\n\x80\x00\xff\x1a\x00\xfe");
+        assert_eq!(file, b"P6\n2 1 255\n\x80\x00\xff\x1a\x00\xfe");
     }
 
     #[test]

@@ -1,0 +1,285 @@
+//! The command line as its users meet it: the program is run, and what it prints, writes and
+//! returns is looked at.
+
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use tempfile::TempDir;
+
+/// A run of the program in a folder of its own, with the repository's scenes in reach.
+struct Run {
+    status: i32,
+    stdout: String,
+    stderr: String,
+}
+
+fn rayweave(folder: &Path, arguments: &str) -> Run {
+    let output = Command::new(env!("CARGO_BIN_EXE_rayweave"))
+        .args(arguments.split_whitespace())
+        .current_dir(folder)
+        .output()
+        .expect("the program starts");
+    Run::of(output)
+}
+
+impl Run {
+    fn of(output: Output) -> Self {
+        Self {
+            status: output.status.code().expect("the program ends by itself"),
+            stdout: String::from_utf8(output.stdout).expect("text"),
+            stderr: String::from_utf8(output.stderr).expect("text"),
+        }
+    }
+
+    fn expect_success(self) -> String {
+        assert_eq!((self.status, self.stderr.as_str()), (0, ""), "{}", self.stdout);
+        self.stdout
+    }
+
+    /// Status 2, nothing but an error on standard error; returns that.
+    fn expect_refusal(self) -> String {
+        assert_eq!((self.status, self.stdout.as_str()), (2, ""), "{}", self.stderr);
+        assert!(self.stderr.starts_with("error: "), "{}", self.stderr);
+        self.stderr
+    }
+}
+
+fn folder() -> TempDir {
+    TempDir::new().expect("a temporary folder")
+}
+
+fn repository() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn scene(name: &str) -> String {
+    repository().join("scenes").join(name).display().to_string()
+}
+
+fn files_in(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).expect("a folder");
+    let mut names: Vec<String> =
+        entries.map(|e| e.expect("an entry").file_name().into_string().expect("text")).collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn strategies_lists_the_registry_in_its_order() {
+    let text = rayweave(folder().path(), "strategies").expect_success();
+    let names: Vec<&str> = text
+        .lines()
+        .filter(|line| !line.starts_with(' '))
+        .filter_map(|line| line.split(' ').next())
+        .collect();
+    let expected: Vec<&str> = rayweave_registry::STRATEGIES.iter().map(|s| s.name()).collect();
+    assert_eq!(names, expected);
+}
+
+#[test]
+fn render_works_from_any_folder_and_names_the_picture_after_the_scene() {
+    let folder = folder();
+    let text = rayweave(folder.path(), "render --size 20x10").expect_success();
+    assert_eq!(files_in(folder.path()), ["report.png"]);
+    assert!(text.contains("20 x 10") && text.contains("written to report.png"), "{text}");
+    rayweave(folder.path(), &format!("render {} --size 20x10", scene("room.toml"))).expect_success();
+    assert_eq!(files_in(folder.path()), ["report.png", "room.png"]);
+}
+
+#[test]
+fn render_gives_the_same_file_with_every_strategy() {
+    let folder = folder();
+    let mut files = Vec::new();
+    for strategy in rayweave_registry::STRATEGIES {
+        let name = strategy.name();
+        for format in ["ppm", "exr", "png"] {
+            let arguments = format!("render --size 33x21 --strategy {name} --threads 3 -o {name}.{format}");
+            rayweave(folder.path(), &arguments).expect_success();
+        }
+        let read = |format| fs::read(folder.path().join(format!("{name}.{format}"))).expect("the picture");
+        assert!(read("ppm").starts_with(b"P6\n33 21 255\n"));
+        assert!(read("exr").starts_with(&[0x76, 0x2f, 0x31, 0x01]));
+        assert!(read("png").starts_with(b"\x89PNG"));
+        files.push([read("ppm"), read("exr"), read("png")]);
+    }
+    assert!(files.iter().all(|file| *file == files[0]));
+}
+
+#[test]
+fn render_replaces_a_picture_and_leaves_nothing_beside_it() {
+    let folder = folder();
+    fs::write(folder.path().join("a.ppm"), "old").expect("written");
+    rayweave(folder.path(), "render --size 8x8 --antialiasing 0 -o a.ppm").expect_success();
+    assert_eq!(files_in(folder.path()), ["a.ppm"]);
+    assert!(fs::read(folder.path().join("a.ppm")).expect("the picture").starts_with(b"P6"));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_picture_is_an_ordinary_file_and_a_link_stays_a_link() {
+    use std::os::unix::fs::{PermissionsExt, symlink};
+    let folder = folder();
+    symlink("target.ppm", folder.path().join("link.ppm")).expect("a link");
+    fs::write(folder.path().join("target.ppm"), "old").expect("written");
+    rayweave(folder.path(), "render --size 4x4 -o link.ppm").expect_success();
+    assert!(fs::symlink_metadata(folder.path().join("link.ppm")).expect("there").is_symlink());
+    assert!(fs::read(folder.path().join("target.ppm")).expect("there").starts_with(b"P6"));
+    rayweave(folder.path(), "render --size 4x4 -o new.ppm").expect_success();
+    let mode = fs::metadata(folder.path().join("new.ppm")).expect("there").permissions().mode();
+    assert_eq!(mode & 0o400, 0o400);
+    assert_ne!(mode & 0o044, 0, "as readable for others as any file: {mode:o}");
+}
+
+#[test]
+fn precision_is_chosen_by_the_scene_or_by_hand() {
+    let folder = folder();
+    let digest = |precision: &str| {
+        let arguments = format!("render --size 40x40 --precision {precision} -o {precision}.ppm");
+        let text = rayweave(folder.path(), &arguments).expect_success();
+        text.split("digest ").nth(1).expect("a digest")[..16].to_owned()
+    };
+    assert_eq!(digest("auto"), digest("f32"));
+    assert_ne!(digest("f64"), digest("f32"));
+}
+
+#[test]
+fn check_holds_and_says_so() {
+    let folder = folder();
+    let text = rayweave(folder.path(), "check --size 31x17 --threads 1,3 --tile 5 --json check.json")
+        .expect_success();
+    assert!(text.contains("all identical"), "{text}");
+    let json: Value = json(&folder.path().join("check.json"));
+    assert_eq!(json["holds"], true);
+    assert!(json["findings"].as_array().expect("a list").is_empty());
+    assert!(json["compared"].as_u64().expect("a number") > 0);
+}
+
+fn json(path: &Path) -> Value {
+    serde_json::from_slice(&fs::read(path).expect("the file")).expect("JSON")
+}
+
+#[test]
+fn compare_writes_what_other_programs_read() {
+    let folder = folder();
+    let arguments = "compare --size 24x16 --antialiasing 1 --threads 1,2 --json a.json --csv a.csv";
+    let table = rayweave(folder.path(), arguments).expect_success();
+    let object = json(&folder.path().join("a.json"));
+    assert_eq!(object["schema"], 1);
+    assert_eq!((&object["width"], &object["height"]), (&Value::from(24), &Value::from(16)));
+    assert!(object["scene"].is_string() && object["machine"].is_object());
+    let results = object["results"].as_array().expect("a list");
+    // The reference, its control, and the other strategies with one and with two threads.
+    assert_eq!(results.len(), 2 + 2 * (rayweave_registry::STRATEGIES.len() - 1));
+    let digest = &results[0]["digest"];
+    for result in results {
+        assert_eq!(result["identical"], true);
+        assert_eq!(&result["digest"], digest);
+        let samples = result["samples_ns"].as_array().expect("a list");
+        assert!(samples.len() >= 5 && samples.iter().all(Value::is_u64));
+        assert!(result["median_ns"].is_number());
+        let [low, median, high] =
+            ["low", "median", "high"].map(|key| result["speedup"][key].as_f64().expect("a number"));
+        assert!(low <= median && median <= high);
+        assert!(table.contains(result["strategy"].as_str().expect("a name")));
+    }
+    let csv = fs::read_to_string(folder.path().join("a.csv")).expect("the file");
+    assert_eq!(csv.lines().count(), 1 + results.len());
+}
+
+#[test]
+fn without_a_command_it_compares() {
+    let folder = folder();
+    let strategy = rayweave_registry::recommended().name();
+    let table =
+        rayweave(folder.path(), &format!("--size 16x16 --threads 2 --strategy {strategy}")).expect_success();
+    assert!(table.contains(strategy) && table.contains("(control)"), "{table}");
+}
+
+#[test]
+fn requests_that_cannot_be_met_are_refused_before_any_work() {
+    let folder = folder();
+    fs::create_dir(folder.path().join("folder.png")).expect("a folder");
+    let cases = [
+        ("render --size 0x10", "1..=65535"),
+        ("render --size 65536x1", "1..=65535"),
+        ("render --size 10", "640x480"),
+        ("render --size 65535x65535", "limit"),
+        ("render --antialiasing 33", "0..=32"),
+        ("render --antialiasing -1", "'-1'"),
+        ("render --threads 0", "1..=1024"),
+        ("render --threads 1025", "1..=1024"),
+        ("render --tile 0", "0"),
+        ("render --strategy nope", "sequential"),
+        ("compare --strategy sequential,nope", "nope"),
+        ("render --precision f16", "f32"),
+        ("render --lanes 3", "auto"),
+        ("render -o a.jpg", ".png, .ppm or .exr"),
+        ("render -o a", ".png, .ppm or .exr"),
+        ("render -o missing/a.png", "no folder missing"),
+        ("render -o folder.png", "folder.png: cannot be written: it is a folder"),
+        ("compare --json missing/a.json", "no folder missing"),
+        ("compare --csv folder.png", "it is a folder"),
+        ("check --json missing/a.json", "no folder missing"),
+        ("render missing.toml", "missing.toml: cannot be read"),
+        ("render folder.png", "folder.png"),
+        ("compar", "compar"),
+    ];
+    for (arguments, expected) in cases {
+        let message = rayweave(folder.path(), arguments).expect_refusal();
+        assert!(message.contains(expected), "{arguments}: {message}");
+    }
+    assert_eq!(files_in(folder.path()), ["folder.png"]);
+}
+
+#[test]
+fn each_malformed_scene_gives_one_message_and_no_picture() {
+    let corpus = repository().join("crates/scene-file/tests/malformed");
+    let folder = folder();
+    let scenes: Vec<String> = files_in(&corpus).into_iter().filter(|name| name.ends_with(".toml")).collect();
+    assert!(scenes.len() >= 40, "{} malformed scenes", scenes.len());
+    for name in scenes {
+        let expected = fs::read_to_string(corpus.join(&name).with_extension("expected")).expect("beside it");
+        fs::copy(corpus.join(&name), folder.path().join(&name)).expect("copied");
+        let message = rayweave(folder.path(), &format!("render {name} -o a.png")).expect_refusal();
+        assert_eq!(message, format!("error: {}\n", expected.trim_end()));
+        fs::remove_file(folder.path().join(&name)).expect("removed");
+    }
+    assert!(files_in(folder.path()).is_empty());
+}
+
+/// A user who may start few threads: the rest cannot be started.
+#[cfg(target_os = "linux")]
+#[test]
+fn threads_that_cannot_be_started_are_an_error_that_names_the_strategy() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = folder();
+    // The limit does not hold for root, so root runs a copy of the program as nobody.
+    let program = folder.path().join("rayweave");
+    fs::copy(env!("CARGO_BIN_EXE_rayweave"), &program).expect("copied");
+    fs::set_permissions(folder.path(), PermissionsExt::from_mode(0o777)).expect("permitted");
+    let run = |arguments: &str| {
+        let command = format!(
+            "nobody=; if [ $(id -u) = 0 ]; then nobody='setpriv --reuid 65534 --clear-groups'; fi; \
+             exec prlimit --nproc=40 $nobody ./rayweave {arguments}"
+        );
+        let output = Command::new("sh").args(["-c", &command]).current_dir(folder.path()).output();
+        Run::of(output.expect("a shell"))
+    };
+    let parallel = rayweave_registry::STRATEGIES
+        .iter()
+        .filter(|strategy| strategy.threads_start() != rayweave_core::ThreadsStart::Never);
+    for strategy in parallel {
+        let name = strategy.name();
+        // Each thread has enough to do not to end before the last is started.
+        let size = "--size 200x200 --threads 1000";
+        let message = run(&format!("render {size} --strategy {name} -o a.png")).expect_refusal();
+        assert!(message.starts_with(&format!("error: {name}: cannot start 1000 threads")), "{message}");
+    }
+    // In a check it is a finding, and the check goes on.
+    let name = rayweave_registry::recommended().name();
+    let check = run(&format!("check --size 8x8 --threads 1000 --strategy {name}"));
+    assert_eq!(check.status, 1, "{}", check.stderr);
+    assert!(check.stdout.contains("cannot start 1000 threads"), "{}", check.stdout);
+    assert_eq!(files_in(folder.path()), ["rayweave"]);
+}
