@@ -1,1 +1,28 @@
-//! Proof that strategies agree, and the timing protocol with its statistics; prints nothing.
+//! Proof that strategies agree, and the timing protocol with its statistics. Prints nothing.
+//!
+//! * [`check`]: every strategy against the reference, bit for bit, with the pixel, the tile and the
+//!   thread that differ;
+//! * [`compare`]: interleaved rounds in which every timed picture is verified;
+//! * [`machine`]: what was measured on, and with what.
+//!
+//! What watches a rendering is a [`Work`](rayweave_core::Work) around a `Work` ([`recorder`]) or
+//! in place of it ([`computing_threads`]): no strategy has a line for any of it.
+
+mod attempt;
+pub mod check;
+pub mod compare;
+pub mod computing_threads;
+pub mod finding;
+pub mod machine;
+mod poison;
+pub mod random;
+pub mod recorder;
+pub mod statistics;
+pub mod stopwatch;
+
+pub use check::{Case, Check, Verdict};
+pub use compare::{Comparison, Entry, Protocol, Row};
+pub use finding::{Fault, Finding};
+pub use machine::Machine;
+pub use statistics::Interval;
+pub use stopwatch::Stopwatch;

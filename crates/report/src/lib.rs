@@ -1,1 +1,8 @@
-//! Results to terminal, JSON and CSV.
+//! Results to terminal, JSON and CSV. Everything here returns text; nothing prints.
+//!
+//! * [`compare::Report`]: the table of a comparison, and the same for other programs;
+//! * [`check`]: what a check found.
+
+pub mod check;
+pub mod compare;
+pub mod machine;

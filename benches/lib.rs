@@ -1,0 +1,36 @@
+//! The two loads that the benches spread: one even, one with nearly all of its cost in a corner.
+
+use rayweave_core::precision::Demand;
+use rayweave_core::{Work, tracer};
+use rayweave_scene_file as scene_file;
+use std::path::Path;
+
+/// A work, its name and the size of its picture.
+pub struct Load {
+    /// In the names of the benches.
+    pub name: &'static str,
+    /// In pixels.
+    pub width: u32,
+    /// In pixels.
+    pub height: u32,
+    /// What is rendered.
+    pub work: Box<dyn Work + Send>,
+}
+
+/// Both loads.
+///
+/// # Panics
+///
+/// The repository's scenes cannot be read.
+#[must_use]
+pub fn loads() -> [Load; 2] {
+    [load("balanced", "room.toml", (250, 250)), load("corner", "imbalance.toml", (250, 250))]
+}
+
+fn load(name: &'static str, file: &str, (width, height): (u32, u32)) -> Load {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes").join(file);
+    let scene = scene_file::load(&path).unwrap_or_else(|e| panic!("{e}")).scene;
+    let work =
+        tracer(&scene, width, height, Demand::of(&scene).precision()).unwrap_or_else(|e| panic!("{e}"));
+    Load { name, width, height, work }
+}

@@ -1,1 +1,0 @@
-//! cargo bench over the registry.

@@ -1,0 +1,277 @@
+//! Proof that strategies agree: each against the reference, bit for bit.
+//!
+//! Every strategy is prepared for every number of threads and size of tile, and the renderer so
+//! prepared renders every picture twice: it has to draw the same picture again, and to be the same
+//! after pictures of other sizes. Before each rendering the picture is poisoned, so that a pixel
+//! that nobody writes shows itself, and a [`Recorder`] around the work knows who computed what.
+
+use crate::attempt::attempt;
+use crate::computing_threads::computing_threads;
+use crate::finding::{Difference, Fault, Finding, Picture};
+use crate::poison;
+use crate::recorder::{Record, Recorder};
+use rayweave_core::image::ImageError;
+use rayweave_core::{Image, Plan, Renderer, Rgb, Strategy, ThreadsStart, Work};
+use std::fmt;
+use std::num::{NonZeroU32, NonZeroUsize};
+use std::time::Duration;
+use thiserror::Error;
+
+/// The times that a renderer draws each picture.
+const REPETITIONS: usize = 2;
+
+/// A work and the size of the picture that is made of it.
+pub struct Case<'a> {
+    /// What findings call it.
+    pub name: String,
+    /// In pixels.
+    pub width: u32,
+    /// In pixels.
+    pub height: u32,
+    /// What is rendered.
+    pub work: Box<dyn Work + 'a>,
+}
+
+/// What is checked: every strategy with every number of threads, size of tile and case.
+///
+/// A strategy that starts no threads is checked as the one thread that it is.
+#[derive(Clone, Copy)]
+pub struct Check<'a> {
+    /// What gives the right picture.
+    pub reference: &'a dyn Strategy,
+    /// What has to give the same; the reference may be among them.
+    pub strategies: &'a [&'a dyn Strategy],
+    /// What is rendered.
+    pub cases: &'a [Case<'a>],
+    /// Numbers of computing threads.
+    pub threads: &'a [NonZeroUsize],
+    /// Sides of a tile, in pixels.
+    pub tiles: &'a [NonZeroU32],
+    /// How long a strategy with too few threads is waited for; usually
+    /// [`TIMEOUT`](crate::computing_threads::TIMEOUT).
+    pub timeout: Duration,
+}
+
+/// How far a check is; told before each rendering.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Progress {
+    /// The strategy that is being checked.
+    pub strategy: &'static str,
+    /// For so many computing threads.
+    pub threads: usize,
+    /// Renderings done; what is left out after a failure counts as done.
+    pub done: usize,
+    /// Renderings altogether.
+    pub total: usize,
+}
+
+/// What a check found.
+#[derive(Clone, Debug)]
+pub struct Verdict {
+    /// The number of pictures that were compared with the reference.
+    pub compared: usize,
+    /// Everything that is wrong, strategy by strategy; empty when all agree.
+    pub findings: Vec<Finding>,
+}
+
+/// Why nothing could be checked.
+#[derive(Debug, Error)]
+pub enum CheckError {
+    /// A case whose picture cannot be.
+    #[error("{name}: {source}")]
+    Image {
+        /// The case.
+        name: String,
+        /// The reason.
+        source: ImageError,
+    },
+    /// The reference gave no picture to compare with.
+    #[error("{name}: the reference failed: {message}")]
+    Reference {
+        /// The case.
+        name: String,
+        /// The strategy's message.
+        message: String,
+    },
+}
+
+impl Verdict {
+    /// Whether all strategies agree with the reference.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        self.findings.is_empty()
+    }
+}
+
+impl<'a> Check<'a> {
+    /// Checks everything, and goes on after a finding.
+    ///
+    /// # Errors
+    ///
+    /// There is no reference picture to compare with.
+    pub fn run(&self, mut progress: impl FnMut(Progress)) -> Result<Verdict, CheckError> {
+        let mut pairs = Vec::with_capacity(self.cases.len());
+        for case in self.cases {
+            pairs.push((case, self.reference_picture(case)?));
+        }
+        let settings = |strategy: &&dyn Strategy| self.threads_of(*strategy).len() * self.tiles.len();
+        let total = self.strategies.iter().map(settings).sum::<usize>() * pairs.len() * REPETITIONS;
+
+        let verdict = Verdict { compared: 0, findings: Vec::new() };
+        let mut run = Run { pairs: &pairs, verdict, done: 0, total, progress: &mut progress };
+        for &strategy in self.strategies {
+            for &threads in self.threads_of(strategy) {
+                run.count_threads(strategy, threads, self.timeout);
+                for &tile in self.tiles {
+                    run.render_all(strategy, Plan { threads, tile });
+                }
+            }
+        }
+        Ok(run.verdict)
+    }
+
+    /// The numbers of threads that make a difference to `strategy`.
+    fn threads_of(&self, strategy: &dyn Strategy) -> &'a [NonZeroUsize] {
+        match strategy.threads_start() {
+            ThreadsStart::Never => &[NonZeroUsize::MIN],
+            ThreadsStart::Prepare | ThreadsStart::Render => self.threads,
+        }
+    }
+
+    fn reference_picture(&self, case: &Case<'_>) -> Result<Image, CheckError> {
+        // Black, where every other picture starts as poison: what the reference fails to write differs.
+        let mut picture = Image::new(case.width, case.height)
+            .map_err(|source| CheckError::Image { name: case.name.clone(), source })?;
+        let tile = self.tiles.first().copied().unwrap_or(NonZeroU32::MIN);
+        let plan = Plan { threads: NonZeroUsize::MIN, tile };
+        attempt(|| self.reference.prepare(plan)?.render(&*case.work, &mut picture))
+            .map_err(|message| CheckError::Reference { name: case.name.clone(), message })?;
+        Ok(picture)
+    }
+}
+
+/// A check under way.
+struct Run<'a> {
+    /// Each case with the reference's picture of it.
+    pairs: &'a [(&'a Case<'a>, Image)],
+    verdict: Verdict,
+    done: usize,
+    total: usize,
+    progress: &'a mut dyn FnMut(Progress),
+}
+
+impl Run<'_> {
+    fn count_threads(&mut self, strategy: &dyn Strategy, threads: NonZeroUsize, timeout: Duration) {
+        let fault = match computing_threads(strategy, threads, timeout) {
+            Ok(found) if found == threads.get() => return,
+            Ok(found) => Fault::Threads { expected: threads.get(), found },
+            Err(error) => Fault::Failed(error.to_string()),
+        };
+        self.found(strategy, threads, None, fault);
+    }
+
+    fn render_all(&mut self, strategy: &dyn Strategy, plan: Plan) {
+        let mut renderer = match attempt(|| strategy.prepare(plan)) {
+            Ok(renderer) => renderer,
+            Err(message) => {
+                self.done += self.pairs.len() * REPETITIONS;
+                return self.found(strategy, plan.threads, None, Fault::Failed(message));
+            }
+        };
+        for (case, expected) in self.pairs {
+            for repetition in 0..REPETITIONS {
+                (self.progress)(Progress {
+                    strategy: strategy.name(),
+                    threads: plan.threads.get(),
+                    done: self.done + repetition,
+                    total: self.total,
+                });
+                self.verdict.compared += 1;
+                let faults = render_and_compare(&mut *renderer, &*case.work, expected);
+                if faults.is_empty() {
+                    continue;
+                }
+                let picture = Picture {
+                    scene: case.name.clone(),
+                    width: case.width,
+                    height: case.height,
+                    tile: plan.tile.get(),
+                    repetition: repetition + 1,
+                };
+                for fault in faults {
+                    self.found(strategy, plan.threads, Some(picture.clone()), fault);
+                }
+                // What is wrong already need not be shown to be wrong again.
+                break;
+            }
+            self.done += REPETITIONS;
+        }
+    }
+
+    fn found(
+        &mut self,
+        strategy: &dyn Strategy,
+        threads: NonZeroUsize,
+        picture: Option<Picture>,
+        fault: Fault,
+    ) {
+        let (strategy, threads) = (strategy.name(), threads.get());
+        self.verdict.findings.push(Finding { strategy, threads, picture, fault });
+    }
+}
+
+/// Renders into a poisoned picture and says what is wrong with it, if anything.
+fn render_and_compare(renderer: &mut dyn Renderer, work: &dyn Work, expected: &Image) -> Vec<Fault> {
+    let mut found = expected.clone();
+    poison::fill(&mut found);
+    let recorder = Recorder::new(work);
+    if let Err(message) = attempt(|| renderer.render(&recorder, &mut found)) {
+        return vec![Fault::Failed(message)];
+    }
+    if (found.width(), found.height()) != (expected.width(), expected.height()) {
+        let message = format!("the picture was replaced by one of {}x{}", found.width(), found.height());
+        return vec![Fault::Failed(message)];
+    }
+    let record = recorder.finish();
+    difference(expected, &found, &record).into_iter().chain(not_once(&found, &record)).collect()
+}
+
+fn difference(expected: &Image, found: &Image, record: &Record) -> Option<Fault> {
+    let pairs = expected.pixels().iter().zip(found.pixels());
+    let mut differing = pairs.enumerate().filter(|(_, (expected, found))| !same_bits(**expected, **found));
+    let (index, (&expected, &color)) = differing.next()?;
+    let (x, y) = found.position(index);
+    Some(Fault::Different(Difference {
+        pixels: 1 + differing.count(),
+        x,
+        y,
+        expected,
+        found: (!poison::untouched(color)).then_some(color),
+        computation: record.of_pixel(x, y).pop(),
+    }))
+}
+
+/// Pixels computed several times, or written without being computed. Those that were not written
+/// either are a difference already.
+fn not_once(found: &Image, record: &Record) -> Option<Fault> {
+    let times = record.times_computed(found.width(), found.height());
+    let mut wrong =
+        times.iter().zip(found.pixels()).enumerate().filter(|(_, (times, color))| match **times {
+            0 => !poison::untouched(**color),
+            1 => false,
+            _ => true,
+        });
+    let (index, _) = wrong.next()?;
+    let (x, y) = found.position(index);
+    Some(Fault::NotOnce { pixels: 1 + wrong.count(), x, y, computations: record.of_pixel(x, y) })
+}
+
+fn same_bits(a: Rgb, b: Rgb) -> bool {
+    a.map(f32::to_bits) == b.map(f32::to_bits)
+}
+
+impl fmt::Debug for Case<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Case({}, {}x{})", self.name, self.width, self.height)
+    }
+}

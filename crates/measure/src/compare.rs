@@ -1,0 +1,310 @@
+//! The timing protocol: interleaved rounds in which every timed picture is verified.
+//!
+//! * In each round every row is measured once, in an order shuffled by a seeded generator: what
+//!   drifts (heat, clock rate, neighbours) meets all of them, and none is always after the same other.
+//! * A speed-up is the median over the rounds of the ratio to the reference in the same round.
+//! * The reference is measured a second time as the control: its "speed-up" over itself is 1, and
+//!   what its interval says instead is the error of the whole table.
+//! * Before the rounds each row renders once without being timed, and is verified.
+//! * Preparing, poisoning the picture and verifying it lie outside of the timed span.
+//! * A row that fails, or gives another picture than the reference, is measured no further and gets
+//!   no figures; its samples so far stay.
+//!
+//! The protocol has an [`Executor`] do the rendering and the timing, so its logic is tested without
+//! either; [`Stopwatch`](crate::stopwatch::Stopwatch) is the real one.
+
+use crate::random::SplitMix64;
+use crate::statistics::{Interval, efficiency, karp_flatt, median, median_interval};
+use rayweave_core::{Digest, Strategy, ThreadsStart};
+use std::num::NonZeroUsize;
+use std::time::Duration;
+use thiserror::Error;
+
+#[cfg(test)]
+mod tests;
+
+/// How long and in what order to measure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Protocol {
+    /// Rounds to measure whatever they take, 1 or more.
+    pub min_rounds: usize,
+    /// Rounds to end after.
+    pub max_rounds: usize,
+    /// No round is begun, after the least number of them, that would go beyond this. The reference
+    /// picture and the warm-up count too.
+    pub budget: Duration,
+    /// Of the order within the rounds and of the bootstrap.
+    pub seed: u64,
+}
+
+impl Default for Protocol {
+    /// 5 to 40 rounds in 30 seconds.
+    fn default() -> Self {
+        Self { min_rounds: 5, max_rounds: 40, budget: Duration::from_secs(30), seed: 1 }
+    }
+}
+
+/// A strategy with a number of threads to be measured.
+#[derive(Clone, Copy)]
+pub struct Entry<'a> {
+    /// How the work is spread.
+    pub strategy: &'a dyn Strategy,
+    /// The number of computing threads.
+    pub threads: NonZeroUsize,
+}
+
+/// Renders and times.
+pub trait Executor {
+    /// Prepares `entry`, renders one picture with it, and takes the times of both.
+    ///
+    /// # Errors
+    ///
+    /// What the strategy says of its failure.
+    fn render(&mut self, entry: &Entry<'_>) -> Result<Rendering, String>;
+
+    /// Time since the executor was made.
+    fn elapsed(&self) -> Duration;
+}
+
+/// One rendering, timed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rendering {
+    /// The times.
+    pub sample: Sample,
+    /// Of the picture.
+    pub digest: Digest,
+}
+
+/// The times of one rendering.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sample {
+    /// To prepare the strategy, in nanoseconds.
+    pub prepare_ns: u64,
+    /// To render, in nanoseconds.
+    pub render_ns: u64,
+}
+
+/// How far a comparison is; told before each rendering, outside of any timed span.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Progress {
+    /// The strategy that comes next.
+    pub strategy: &'static str,
+    /// For so many computing threads.
+    pub threads: usize,
+    /// The rounds done; 0 during the warm-up too.
+    pub rounds: usize,
+    /// The share that is done, by rounds or by time, whichever ends first: 0 to 1.
+    pub fraction: f64,
+}
+
+/// The measured rows.
+#[derive(Clone, Debug)]
+pub struct Comparison {
+    /// The reference, the control, then the entries in the order given.
+    pub rows: Vec<Row>,
+    /// Of the picture that every row has to give.
+    pub digest: Digest,
+    /// Rounds measured.
+    pub rounds: usize,
+    /// The protocol's seed.
+    pub seed: u64,
+}
+
+/// What a row is there for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// What every other row is compared with.
+    Reference,
+    /// The reference once more.
+    Control,
+    /// One of the entries.
+    Contender,
+}
+
+/// A strategy with a number of threads, measured.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// The strategy's name.
+    pub strategy: &'static str,
+    /// The number of computing threads.
+    pub threads: usize,
+    /// What it is there for.
+    pub role: Role,
+    /// Which figure contains the start of the threads.
+    pub threads_start: ThreadsStart,
+    /// Whether there is a picture, and every picture was the reference's.
+    pub identical: bool,
+    /// Of the first picture that was not the reference's, or else of all of them; `None` without any.
+    pub digest: Option<Digest>,
+    /// Why the strategy failed.
+    pub error: Option<String>,
+    /// Of the verified renderings, one a round, from the first round on.
+    pub samples: Vec<Sample>,
+    /// `None` for a row that failed or gave a wrong picture.
+    pub figures: Option<Figures>,
+}
+
+/// What the samples of a row come to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Figures {
+    /// Median time to render, in nanoseconds.
+    pub median_ns: f64,
+    /// Median time to prepare, in nanoseconds.
+    pub prepare_ns: f64,
+    /// Time of the reference over the row's own, within a round.
+    pub speedup: Interval,
+    /// The median speed-up per thread: 1 is perfect.
+    pub efficiency: f64,
+    /// After Karp and Flatt, from the median speed-up; `None` for one thread.
+    pub serial_fraction: Option<f64>,
+}
+
+/// Why nothing could be compared.
+#[derive(Debug, Error)]
+pub enum CompareError {
+    /// There is no picture to verify the others with.
+    #[error("the reference failed: {0}")]
+    Reference(String),
+}
+
+impl Comparison {
+    /// Whether every row gave the reference's picture, every time.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        self.rows.iter().all(Row::holds)
+    }
+
+    /// What the reference seems to gain on itself: the error of the table.
+    #[must_use]
+    pub fn control(&self) -> Option<Interval> {
+        let control = self.rows.iter().find(|row| row.role == Role::Control)?;
+        control.figures.map(|figures| figures.speedup)
+    }
+}
+
+impl Row {
+    /// Whether it gave the reference's picture, every time.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        self.identical && self.error.is_none()
+    }
+
+    fn new(entry: &Entry<'_>, role: Role) -> Self {
+        let threads_start = entry.strategy.threads_start();
+        let threads = if threads_start == ThreadsStart::Never { 1 } else { entry.threads.get() };
+        Self {
+            strategy: entry.strategy.name(),
+            threads,
+            role,
+            threads_start,
+            // Until the warm-up has shown otherwise.
+            identical: true,
+            digest: None,
+            error: None,
+            samples: Vec::new(),
+            figures: None,
+        }
+    }
+
+    /// Takes note of a rendering, and gives its times if they may be used.
+    fn verify(&mut self, result: Result<Rendering, String>, expected: Digest) -> Option<Sample> {
+        match result {
+            Ok(Rendering { sample, digest }) => {
+                self.digest = Some(digest);
+                self.identical = digest == expected;
+                self.identical.then_some(sample)
+            }
+            Err(error) => {
+                self.error = Some(error);
+                self.identical = self.digest.is_some();
+                None
+            }
+        }
+    }
+
+    fn figures(&self, reference: &[Sample], seed: u64) -> Option<Figures> {
+        let over = |of: fn(&Sample) -> u64| self.samples.iter().map(move |sample| of(sample) as f64);
+        let pairs = reference.iter().zip(&self.samples);
+        // A clock too coarse for the rendering must not make a ratio of 0 / 0.
+        let ratio = |(a, b): (&Sample, &Sample)| a.render_ns.max(1) as f64 / b.render_ns.max(1) as f64;
+        let speedup = median_interval(&pairs.map(ratio).collect::<Vec<_>>(), seed)?;
+        Some(Figures {
+            median_ns: median(&over(|sample| sample.render_ns).collect::<Vec<_>>())?,
+            prepare_ns: median(&over(|sample| sample.prepare_ns).collect::<Vec<_>>())?,
+            speedup,
+            efficiency: efficiency(speedup.median, self.threads),
+            serial_fraction: karp_flatt(speedup.median, self.threads),
+        })
+    }
+}
+
+impl Protocol {
+    /// Measures `reference`, its control and `entries`; entries of the reference itself are left
+    /// out, since it is measured anyway.
+    ///
+    /// # Errors
+    ///
+    /// There is no reference picture.
+    pub fn run(
+        &self,
+        reference: &dyn Strategy,
+        entries: &[Entry<'_>],
+        executor: &mut dyn Executor,
+        mut progress: impl FnMut(Progress),
+    ) -> Result<Comparison, CompareError> {
+        let base = Entry { strategy: reference, threads: NonZeroUsize::MIN };
+        let contenders = entries.iter().filter(|entry| entry.strategy.name() != reference.name());
+        let entries: Vec<Entry<'_>> = [base, base].into_iter().chain(contenders.copied()).collect();
+        let roles = [Role::Reference, Role::Control].into_iter().chain(std::iter::repeat(Role::Contender));
+        let mut rows: Vec<Row> =
+            entries.iter().zip(roles).map(|(entry, role)| Row::new(entry, role)).collect();
+
+        let digest = executor.render(&base).map_err(CompareError::Reference)?.digest;
+        let mut order: Vec<usize> = (0..rows.len()).collect();
+        let mut random = SplitMix64::new(self.seed);
+        let (mut rounds, mut last_round) = (0, Duration::ZERO);
+        let mut warm = false;
+        // Without its reference a round says nothing.
+        while rows[0].holds() && (!warm || self.wants_another(rounds, executor.elapsed() + last_round)) {
+            let begin = executor.elapsed();
+            if warm {
+                random.shuffle(&mut order);
+            }
+            for &index in &order {
+                let (row, entry) = (&mut rows[index], &entries[index]);
+                if !row.holds() {
+                    continue;
+                }
+                progress(Progress {
+                    strategy: row.strategy,
+                    threads: row.threads,
+                    rounds,
+                    fraction: self.fraction(rounds, executor.elapsed()),
+                });
+                let sample = row.verify(executor.render(entry), digest);
+                row.samples.extend(sample.filter(|_| warm));
+            }
+            rounds += usize::from(warm);
+            warm = true;
+            last_round = executor.elapsed().saturating_sub(begin);
+        }
+
+        let reference = rows[0].samples.clone();
+        for row in &mut rows {
+            row.figures = if row.holds() { row.figures(&reference, self.seed) } else { None };
+        }
+        Ok(Comparison { rows, digest, rounds, seed: self.seed })
+    }
+
+    /// Whether to begin a round after `rounds` of them, if it would end at `end`.
+    fn wants_another(&self, rounds: usize, end: Duration) -> bool {
+        rounds < self.min_rounds.max(1) || (rounds < self.max_rounds && end <= self.budget)
+    }
+
+    /// How much is done, by rounds or by time, whichever is nearer to the end.
+    fn fraction(&self, rounds: usize, elapsed: Duration) -> f64 {
+        let of = |rounds: usize, all: usize| (rounds as f64 / all.max(1) as f64).min(1.0);
+        let time = elapsed.as_secs_f64() / self.budget.as_secs_f64().max(f64::MIN_POSITIVE);
+        of(rounds, self.min_rounds).min(time.min(1.0)).max(of(rounds, self.max_rounds))
+    }
+}

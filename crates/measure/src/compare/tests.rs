@@ -1,0 +1,211 @@
+//! The protocol's logic, with a clock and renderings that are made up.
+
+use super::*;
+use rayweave_core::{Image, Plan, Renderer, StrategyError};
+
+/// Never asked to render: the executor makes up what it would do.
+struct Named(&'static str, ThreadsStart);
+
+impl Strategy for Named {
+    fn name(&self) -> &'static str {
+        self.0
+    }
+
+    fn summary(&self) -> &'static str {
+        "a name"
+    }
+
+    fn threads_start(&self) -> ThreadsStart {
+        self.1
+    }
+
+    fn prepare(&self, _: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
+        unreachable!("the executor is a fake")
+    }
+}
+
+static REFERENCE: Named = Named("reference", ThreadsStart::Never);
+static POOL: Named = Named("pool", ThreadsStart::Prepare);
+static QUEUE: Named = Named("queue", ThreadsStart::Render);
+
+/// Answers the n-th call of a strategy by a function of its name and n, and moves the clock by the answer.
+struct Fake<F> {
+    answer: F,
+    calls: Vec<&'static str>,
+    clock: Duration,
+}
+
+impl<F: FnMut(&'static str, usize) -> Result<Rendering, String>> Executor for Fake<F> {
+    fn render(&mut self, entry: &Entry<'_>) -> Result<Rendering, String> {
+        let name = entry.strategy.name();
+        let result = (self.answer)(name, self.calls.iter().filter(|&&call| call == name).count());
+        self.calls.push(name);
+        self.clock += Duration::from_nanos(result.as_ref().map_or(0, |rendering| rendering.sample.render_ns));
+        result
+    }
+
+    fn elapsed(&self) -> Duration {
+        self.clock
+    }
+}
+
+fn fake<F: FnMut(&'static str, usize) -> Result<Rendering, String>>(answer: F) -> Fake<F> {
+    Fake { answer, calls: Vec::new(), clock: Duration::ZERO }
+}
+
+fn picture(brightness: f32) -> Digest {
+    Image::filled(1, 1, [brightness; 3]).expect("a pixel").digest()
+}
+
+fn right(render_ns: u64) -> Result<Rendering, String> {
+    Ok(Rendering { sample: Sample { prepare_ns: 7, render_ns }, digest: picture(1.0) })
+}
+
+fn wrong(render_ns: u64) -> Result<Rendering, String> {
+    right(render_ns).map(|rendering| Rendering { digest: picture(0.5), ..rendering })
+}
+
+fn entry(strategy: &Named, threads: usize) -> Entry<'_> {
+    Entry { strategy, threads: NonZeroUsize::new(threads).expect("not 0") }
+}
+
+fn protocol(min_rounds: usize, max_rounds: usize, budget_ns: u64) -> Protocol {
+    Protocol { min_rounds, max_rounds, budget: Duration::from_nanos(budget_ns), seed: 3 }
+}
+
+fn run<F: FnMut(&'static str, usize) -> Result<Rendering, String>>(
+    protocol: Protocol,
+    executor: &mut Fake<F>,
+) -> Comparison {
+    let entries = [entry(&POOL, 2), entry(&QUEUE, 4)];
+    protocol.run(&REFERENCE, &entries, executor, |_| {}).expect("a reference picture")
+}
+
+#[test]
+fn every_round_measures_every_row_once_in_an_order_that_varies() {
+    let mut executor = fake(|_, _| right(1));
+    let comparison = run(protocol(8, 8, u64::MAX), &mut executor);
+
+    assert_eq!(comparison.rounds, 8);
+    let (before, measured) = executor.calls.split_at(1 + 4);
+    assert_eq!(before, ["reference", "reference", "reference", "pool", "queue"]);
+    let rounds: Vec<&[&str]> = measured.chunks(4).collect();
+    assert_eq!(rounds.len(), 8);
+    for round in &rounds {
+        let mut names = round.to_vec();
+        names.sort_unstable();
+        assert_eq!(names, ["pool", "queue", "reference", "reference"]);
+    }
+    assert!(rounds.iter().any(|round| round != &rounds[0]), "never shuffled");
+
+    let mut again = fake(|_, _| right(1));
+    run(protocol(8, 8, u64::MAX), &mut again);
+    assert_eq!(again.calls, executor.calls, "the same seed, another order");
+}
+
+#[test]
+fn rows_are_reference_control_and_contenders() {
+    let entries = [entry(&REFERENCE, 4), entry(&POOL, 2)];
+    let mut executor = fake(|_, _| right(1));
+    let comparison = protocol(1, 1, 0).run(&REFERENCE, &entries, &mut executor, |_| {}).expect("a picture");
+    let rows: Vec<_> = comparison.rows.iter().map(|row| (row.strategy, row.threads, row.role)).collect();
+    assert_eq!(
+        rows,
+        [("reference", 1, Role::Reference), ("reference", 1, Role::Control), ("pool", 2, Role::Contender)]
+    );
+}
+
+#[test]
+fn the_warm_up_is_verified_and_not_counted() {
+    // The first calls are a thousand times slower than the rest.
+    let mut executor = fake(|_, call| right(if call == 0 { 100_000 } else { 100 }));
+    let comparison = run(protocol(5, 5, u64::MAX), &mut executor);
+    for row in &comparison.rows[2..] {
+        assert_eq!(row.samples, [Sample { prepare_ns: 7, render_ns: 100 }; 5]);
+    }
+
+    let mut executor = fake(|name, call| if name == "pool" && call == 0 { wrong(1) } else { right(1) });
+    let comparison = run(protocol(5, 5, u64::MAX), &mut executor);
+    assert!(!comparison.rows[2].identical && comparison.rows[2].samples.is_empty());
+}
+
+#[test]
+fn a_speedup_is_the_median_of_the_ratios_within_a_round() {
+    // Rounds slow down by a factor that all rows share; the pool takes half of the reference's time.
+    let mut executor = fake(|name, call| {
+        // The reference is called three times before the first round, and twice in each.
+        let round = if name == "reference" { call.saturating_sub(3) / 2 } else { call.saturating_sub(1) };
+        let slow = 1000 << round;
+        right(if name == "pool" { slow / 2 } else { slow })
+    });
+    let comparison = run(protocol(5, 5, u64::MAX), &mut executor);
+    let figures = comparison.rows[2].figures.expect("figures");
+    assert_eq!(figures.speedup, Interval { median: 2.0, low: 2.0, high: 2.0 });
+    assert_eq!((figures.efficiency, figures.serial_fraction), (1.0, Some(0.0)));
+    assert_eq!((figures.median_ns, figures.prepare_ns), (2000.0, 7.0));
+    let queue = comparison.rows[3].figures.expect("figures");
+    assert_eq!((queue.efficiency, queue.serial_fraction), (0.25, Some(1.0)));
+    assert_eq!(comparison.control(), Some(Interval { median: 1.0, low: 1.0, high: 1.0 }));
+}
+
+#[test]
+fn a_wrong_picture_ends_its_row_and_no_other() {
+    // Wrong in the third round: after the warm-up and two good ones.
+    let mut executor = fake(|name, call| if name == "pool" && call >= 3 { wrong(1) } else { right(4) });
+    let comparison = run(protocol(6, 6, u64::MAX), &mut executor);
+    let pool = &comparison.rows[2];
+    assert!(!pool.identical && !pool.holds() && !comparison.holds());
+    assert_eq!(pool.digest, Some(picture(0.5)));
+    assert_eq!(pool.samples.len(), 2, "the times of a wrong picture are no sample");
+    assert_eq!(pool.figures, None);
+    assert_eq!(executor.calls.iter().filter(|&&name| name == "pool").count(), 4);
+
+    let queue = &comparison.rows[3];
+    assert!(queue.holds() && queue.figures.is_some());
+    assert_eq!((queue.samples.len(), queue.digest), (6, Some(comparison.digest)));
+}
+
+#[test]
+fn an_error_ends_its_row_and_no_other() {
+    let mut executor =
+        fake(|name, call| if name == "queue" && call == 2 { Err("no threads".to_owned()) } else { right(4) });
+    let comparison = run(protocol(6, 6, u64::MAX), &mut executor);
+    let queue = &comparison.rows[3];
+    assert_eq!(queue.error.as_deref(), Some("no threads"));
+    assert!(!queue.holds() && queue.identical, "the pictures before the error were right");
+    assert_eq!((queue.samples.len(), queue.figures), (1, None));
+    assert_eq!(comparison.rows[2].samples.len(), 6);
+
+    let mut executor = fake(|name, _| if name == "queue" { Err("no threads".to_owned()) } else { right(4) });
+    let comparison = run(protocol(1, 1, 0), &mut executor);
+    assert!(!comparison.rows[3].identical, "without a picture nothing is identical");
+}
+
+#[test]
+fn a_failing_reference_is_an_error() {
+    let mut executor = fake(|_, _| Err("broken".to_owned()));
+    let result = protocol(1, 1, 0).run(&REFERENCE, &[], &mut executor, |_| {});
+    assert_eq!(result.expect_err("no picture").to_string(), "the reference failed: broken");
+}
+
+#[test]
+fn rounds_end_with_the_budget_but_not_before_the_least_number() {
+    let rounds = |protocol| run(protocol, &mut fake(|_, _| right(10))).rounds;
+    // The reference picture takes 10, the warm-up and each round 40: five rounds end at 250.
+    assert_eq!(rounds(protocol(1, 100, 250)), 5);
+    assert_eq!(rounds(protocol(1, 100, 249)), 4, "a round that would not end in time is not begun");
+    assert_eq!(rounds(protocol(3, 100, 0)), 3);
+    assert_eq!(rounds(protocol(0, 100, 0)), 1);
+    assert_eq!(rounds(protocol(1, 7, u64::MAX)), 7);
+}
+
+#[test]
+fn progress_only_grows_and_stays_below_one() {
+    let mut fractions = Vec::new();
+    let mut executor = fake(|_, _| right(10));
+    let protocol = protocol(3, 10, 300);
+    protocol.run(&REFERENCE, &[], &mut executor, |p| fractions.push(p.fraction)).expect("a picture");
+    assert!(fractions.is_sorted(), "{fractions:?}");
+    assert!(fractions.iter().all(|fraction| (0.0..1.0).contains(fraction)), "{fractions:?}");
+    assert!(fractions.last() > Some(&0.8), "{fractions:?}");
+}

@@ -1,0 +1,208 @@
+//! What can be wrong with a strategy, told such that its author knows where to look.
+
+use crate::recorder::Computation;
+use rayweave_core::Rgb;
+use std::fmt;
+
+/// One thing that a check found wrong.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finding {
+    /// The strategy's name.
+    pub strategy: &'static str,
+    /// The number of computing threads asked for.
+    pub threads: usize,
+    /// The picture in which it shows; `None` where it is not about one.
+    pub picture: Option<Picture>,
+    /// What is wrong.
+    pub fault: Fault,
+}
+
+/// One rendering of a check.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Picture {
+    /// The name of the work.
+    pub scene: String,
+    /// In pixels.
+    pub width: u32,
+    /// In pixels.
+    pub height: u32,
+    /// The side of a tile, in pixels.
+    pub tile: u32,
+    /// 1, or 2 for the same picture rendered once more by the same renderer.
+    pub repetition: usize,
+}
+
+/// What is wrong. Pixels are counted over the whole picture; the first is the first in reading order.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Fault {
+    /// The picture is not the reference's.
+    Different(Difference),
+    /// Pixels are right, or at least written, but were not computed exactly once.
+    NotOnce {
+        /// The number of such pixels.
+        pixels: usize,
+        /// Column of the first.
+        x: u32,
+        /// Row of the first.
+        y: u32,
+        /// Every computation of the first; empty when it was written without being computed.
+        computations: Vec<Computation>,
+    },
+    /// The number of computing threads is not the one asked for.
+    Threads {
+        /// What it should be: the number asked for, or 1 for a strategy that starts no threads.
+        expected: usize,
+        /// How many computed.
+        found: usize,
+    },
+    /// The strategy returned an error or panicked: its message.
+    Failed(String),
+}
+
+/// Where a picture is not the reference's.
+#[derive(Clone, Debug)]
+pub struct Difference {
+    /// The number of differing pixels.
+    pub pixels: usize,
+    /// Column of the first.
+    pub x: u32,
+    /// Row of the first.
+    pub y: u32,
+    /// What the reference has there.
+    pub expected: Rgb,
+    /// What was found there; `None` when nobody wrote it.
+    pub found: Option<Rgb>,
+    /// Who computed it last; `None` when nobody did.
+    pub computation: Option<Computation>,
+}
+
+/// Bits are compared, so that a NaN equals itself.
+impl PartialEq for Difference {
+    fn eq(&self, other: &Self) -> bool {
+        let bits = |color: Rgb| color.map(f32::to_bits);
+        (self.pixels, self.x, self.y) == (other.pixels, other.x, other.y)
+            && bits(self.expected) == bits(other.expected)
+            && self.found.map(bits) == other.found.map(bits)
+            && self.computation == other.computation
+    }
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let plural = if self.threads == 1 { "" } else { "s" };
+        write!(f, "{}, {} thread{plural}", self.strategy, self.threads)?;
+        if let Some(picture) = &self.picture {
+            write!(f, ", {picture}")?;
+        }
+        write!(f, ": {}", self.fault)
+    }
+}
+
+impl fmt::Display for Picture {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {}x{}, tiles of {}", self.scene, self.width, self.height, self.tile)?;
+        if self.repetition > 1 { write!(f, ", rendered again") } else { Ok(()) }
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Different(difference) => difference.fmt(f),
+            Self::NotOnce { pixels, x, y, computations } => {
+                write!(f, "pixels not computed exactly once: {pixels}, first ({x}, {y}), computed ")?;
+                match computations.as_slice() {
+                    [] => write!(f, "by nobody"),
+                    several => {
+                        write!(f, "{} times", several.len())?;
+                        several.iter().try_for_each(|computation| write!(f, ", {computation}"))
+                    }
+                }
+            }
+            Self::Threads { expected, found } => {
+                write!(f, "computing threads: expected {expected}, found {found}")
+            }
+            Self::Failed(message) => f.write_str(message),
+        }
+    }
+}
+
+impl fmt::Display for Difference {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { pixels, x, y, expected, found, computation } = self;
+        write!(f, "differing pixels: {pixels}, first ({x}, {y}), expected {}, found ", Color(*expected))?;
+        match found {
+            Some(color) => write!(f, "{}", Color(*color))?,
+            None => write!(f, "never written")?,
+        }
+        match computation {
+            Some(computation) => write!(f, ", computed in {computation}"),
+            None => write!(f, ", computed by nobody"),
+        }
+    }
+}
+
+/// A colour such that different bits are different text.
+struct Color(Rgb);
+
+impl fmt::Display for Color {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let channel = |value: f32| match value.is_nan() {
+            true => format!("NaN({:#x})", value.to_bits()),
+            false => format!("{value:?}"),
+        };
+        write!(f, "[{}]", self.0.map(channel).join(", "))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recorder::Thread;
+    use rayweave_core::Area;
+
+    fn computation() -> Computation {
+        let tile = Area { x: 8, y: 16, width: 8, height: 4 };
+        Computation { tile, thread: Thread { index: 1, name: Some("tile-queue 0".to_owned()) } }
+    }
+
+    #[test]
+    fn a_difference_says_everything() {
+        let picture = Picture { scene: "room".to_owned(), width: 97, height: 61, tile: 8, repetition: 2 };
+        let difference = Difference {
+            pixels: 32,
+            x: 9,
+            y: 17,
+            expected: [0.1, 1.0, -0.0],
+            found: Some([0.1f32.next_up(), f32::from_bits(0x7fc0_0001), 0.0]),
+            computation: Some(computation()),
+        };
+        let mut finding = Finding {
+            strategy: "tile-queue",
+            threads: 2,
+            picture: Some(picture),
+            fault: Fault::Different(difference.clone()),
+        };
+        assert_eq!(
+            finding.to_string(),
+            "tile-queue, 2 threads, room 97x61, tiles of 8, rendered again: differing pixels: 32, first \
+             (9, 17), expected [0.1, 1.0, -0.0], found [0.10000001, NaN(0x7fc00001), 0.0], computed in \
+             tile 8x4 at (8, 16) by thread 1 (\"tile-queue 0\")"
+        );
+        finding.fault = Fault::Different(Difference { found: None, computation: None, ..difference });
+        assert!(finding.to_string().ends_with("found never written, computed by nobody"));
+    }
+
+    #[test]
+    fn the_other_faults() {
+        let finding = |fault| Finding { strategy: "one", threads: 1, picture: None, fault }.to_string();
+        assert_eq!(
+            finding(Fault::Threads { expected: 1, found: 2 }),
+            "one, 1 thread: computing threads: expected 1, found 2"
+        );
+        let once = |computations| Fault::NotOnce { pixels: 3, x: 0, y: 1, computations };
+        let text = finding(once(vec![computation(), computation()]));
+        assert!(text.contains("once: 3, first (0, 1), computed 2 times, tile 8x4 at"), "{text}");
+        assert!(finding(once(Vec::new())).ends_with("computed by nobody"));
+    }
+}

@@ -1,0 +1,159 @@
+//! What a result was measured on, and with what.
+
+use std::env::consts::{ARCH, OS};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::thread;
+
+/// Where Linux shows its control groups.
+const GROUPS: &str = "/sys/fs/cgroup";
+
+/// Facts about this machine and this program.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Machine {
+    /// The processor's model, or "unknown".
+    pub cpu: String,
+    /// Logical cores that the machine has, whether or not this process may use them.
+    pub logical_cores: usize,
+    /// Threads that can run at the same time under this process's affinity and quota.
+    pub available_threads: usize,
+    /// The control group's limit in cores, where there is one.
+    pub quota: Option<f64>,
+    /// Operating system: "linux", "macos", ...
+    pub os: &'static str,
+    /// Architecture: "x86_64", "aarch64", ...
+    pub arch: &'static str,
+    /// Instruction sets that the program was compiled for.
+    pub target_features: Vec<&'static str>,
+    /// The compiler's own name for its version, or "unknown".
+    pub compiler: &'static str,
+    /// "release" or "debug": the kind of build.
+    pub profile: &'static str,
+    /// The commit, "-dirty" added if the sources differ from it, or "unknown".
+    pub commit: &'static str,
+}
+
+impl Machine {
+    /// Looks at this machine; what cannot be found out is unknown.
+    #[must_use]
+    pub fn here() -> Self {
+        let cpuinfo = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+        let available_threads = thread::available_parallelism().map_or(1, usize::from);
+        Self {
+            cpu: cpu_model(&cpuinfo).unwrap_or("unknown").to_owned(),
+            logical_cores: logical_cores(&cpuinfo).unwrap_or(available_threads),
+            available_threads,
+            quota: quota(),
+            os: OS,
+            arch: ARCH,
+            target_features: env!("RAYWEAVE_TARGET_FEATURES")
+                .split(',')
+                .filter(|name| !name.is_empty())
+                .collect(),
+            compiler: env!("RAYWEAVE_COMPILER"),
+            profile: env!("RAYWEAVE_PROFILE"),
+            commit: env!("RAYWEAVE_COMMIT"),
+        }
+    }
+}
+
+/// The value of the first "model name : value" line of `/proc/cpuinfo`.
+fn cpu_model(cpuinfo: &str) -> Option<&str> {
+    let model = cpuinfo.lines().find(|line| line.starts_with("model name"))?;
+    model.split_once(':').map(|(_, value)| value.trim())
+}
+
+fn logical_cores(cpuinfo: &str) -> Option<usize> {
+    let count = cpuinfo.lines().filter(|line| line.starts_with("processor")).count();
+    (count > 0).then_some(count)
+}
+
+/// The tightest limit of the control groups that this process is in, in cores.
+fn quota() -> Option<f64> {
+    let groups = fs::read_to_string("/proc/self/cgroup").ok()?;
+    let groups = groups.lines().filter_map(cpu_group);
+    let limits = groups.flat_map(|(version, folder)| {
+        // The groups around a group bind it too.
+        let inside = |folder: &&Path| folder.starts_with(GROUPS);
+        folder.ancestors().take_while(inside).filter_map(|folder| limit(version, folder)).collect::<Vec<_>>()
+    });
+    limits.min_by(f64::total_cmp)
+}
+
+/// The two forms of control groups.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Version {
+    /// One hierarchy for each controller.
+    V1,
+    /// One hierarchy for all.
+    V2,
+}
+
+/// The CPU's group in a line "number:controllers:/path" of `/proc/self/cgroup`, and its folder.
+fn cpu_group(line: &str) -> Option<(Version, PathBuf)> {
+    let mut parts = line.splitn(3, ':').skip(1);
+    let (controllers, path) = (parts.next()?, parts.next()?.trim_start_matches('/'));
+    if controllers.is_empty() {
+        Some((Version::V2, Path::new(GROUPS).join(path)))
+    } else if controllers.split(',').any(|name| name == "cpu") {
+        Some((Version::V1, Path::new(GROUPS).join("cpu").join(path)))
+    } else {
+        None
+    }
+}
+
+fn limit(version: Version, folder: &Path) -> Option<f64> {
+    let read = |file| fs::read_to_string(folder.join(file)).ok();
+    match version {
+        Version::V1 => cores(&format!("{} {}", read("cpu.cfs_quota_us")?, read("cpu.cfs_period_us")?)),
+        Version::V2 => cores(&read("cpu.max")?),
+    }
+}
+
+/// The cores of "quota period", both in the same unit; none for "max" or -1, which mean no limit.
+fn cores(text: &str) -> Option<f64> {
+    let mut numbers = text.split_whitespace().map(str::parse::<f64>);
+    let (quota, period) = (numbers.next()?.ok()?, numbers.next()?.ok()?);
+    (quota > 0.0 && period > 0.0).then(|| quota / period)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn here_has_a_compiler_and_threads() {
+        let machine = Machine::here();
+        assert!(machine.compiler.starts_with("rustc "), "{}", machine.compiler);
+        assert!(machine.available_threads >= 1 && machine.logical_cores >= 1);
+        assert!(!machine.commit.is_empty());
+    }
+
+    #[test]
+    fn cpuinfo() {
+        let text = "processor\t: 0\nmodel name\t: Some CPU: 2 GHz\n\nprocessor\t: 1\nmodel name\t: other\n";
+        assert_eq!(cpu_model(text), Some("Some CPU: 2 GHz"));
+        assert_eq!(logical_cores(text), Some(2));
+        assert_eq!((cpu_model(""), logical_cores("")), (None, None));
+    }
+
+    #[test]
+    fn groups_of_both_versions() {
+        let v2 = |path: &str| Some((Version::V2, PathBuf::from(path)));
+        let v1 = |path: &str| Some((Version::V1, PathBuf::from(path)));
+        assert_eq!(cpu_group("0::/a/b"), v2("/sys/fs/cgroup/a/b"));
+        assert_eq!(cpu_group("0::/"), v2("/sys/fs/cgroup/"));
+        assert_eq!(cpu_group("4:cpu,cpuacct:/docker/x:y"), v1("/sys/fs/cgroup/cpu/docker/x:y"));
+        assert_eq!(cpu_group("3:cpuset:/"), None);
+        assert_eq!(cpu_group("nonsense"), None);
+    }
+
+    #[test]
+    fn quotas() {
+        assert_eq!(cores("150000 100000\n"), Some(1.5));
+        assert_eq!(cores("max 100000\n"), None);
+        assert_eq!(cores("-1\n 100000\n"), None);
+        assert_eq!(cores("200000"), None);
+        assert_eq!(cores(""), None);
+    }
+}

@@ -1,0 +1,172 @@
+//! Who computed what: a work around a work.
+
+use rayweave_core::{Area, Tile, Work};
+use std::fmt;
+use std::sync::{Mutex, PoisonError};
+use std::thread::{self, ThreadId};
+
+/// Records every tile that the work inside completes, and on which thread.
+///
+/// It takes a lock for each tile and keeps an entry for each: for proofs, never for timed runs.
+pub struct Recorder<'a> {
+    work: &'a dyn Work,
+    log: Mutex<Log>,
+}
+
+#[derive(Debug, Default)]
+struct Log {
+    threads: Vec<(ThreadId, Thread)>,
+    computations: Vec<(Area, usize)>,
+}
+
+/// A thread that computed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Thread {
+    /// 0 for the first thread to complete a tile, 1 for the next other one, and so on.
+    pub index: usize,
+    /// Its name, where it has one.
+    pub name: Option<String>,
+}
+
+/// A tile, and the thread that computed it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Computation {
+    /// As the work was asked for it: a single pixel for a strategy that deals in pixels.
+    pub tile: Area,
+    /// Who computed it.
+    pub thread: Thread,
+}
+
+/// What a [`Recorder`] saw of one rendering.
+#[derive(Debug)]
+pub struct Record {
+    log: Log,
+}
+
+impl<'a> Recorder<'a> {
+    /// Records what is rendered of `work`.
+    #[must_use]
+    pub fn new(work: &'a dyn Work) -> Self {
+        Self { work, log: Mutex::default() }
+    }
+
+    /// What was recorded.
+    #[must_use]
+    pub fn finish(self) -> Record {
+        Record { log: self.log.into_inner().unwrap_or_else(PoisonError::into_inner) }
+    }
+}
+
+impl Work for Recorder<'_> {
+    fn render(&self, tile: &mut Tile<'_>) {
+        self.work.render(tile);
+        let mut log = self.log.lock().unwrap_or_else(PoisonError::into_inner);
+        let thread = log.index_of_this_thread();
+        log.computations.push((tile.area(), thread));
+    }
+}
+
+impl Log {
+    fn index_of_this_thread(&mut self) -> usize {
+        let this = thread::current();
+        let known = self.threads.iter().position(|(id, _)| *id == this.id());
+        known.unwrap_or_else(|| {
+            let index = self.threads.len();
+            self.threads.push((this.id(), Thread { index, name: this.name().map(str::to_owned) }));
+            index
+        })
+    }
+}
+
+impl Record {
+    /// The number of threads that computed.
+    #[must_use]
+    pub fn threads(&self) -> usize {
+        self.log.threads.len()
+    }
+
+    /// Every tile in the order of completion.
+    pub fn computations(&self) -> impl Iterator<Item = Computation> {
+        self.log.computations.iter().map(|&(tile, thread)| self.computation(tile, thread))
+    }
+
+    /// The tiles that contain pixel `(x, y)`, in the order of completion.
+    #[must_use]
+    pub fn of_pixel(&self, x: u32, y: u32) -> Vec<Computation> {
+        let containing = self.log.computations.iter().filter(|(tile, _)| tile.contains(x, y));
+        containing.map(|&(tile, thread)| self.computation(tile, thread)).collect()
+    }
+
+    /// How often each pixel of a picture of this size was computed, row by row. What was computed
+    /// outside of the picture is not counted.
+    #[must_use]
+    pub fn times_computed(&self, width: u32, height: u32) -> Vec<u32> {
+        let mut times = vec![0; width as usize * height as usize];
+        for (tile, _) in &self.log.computations {
+            let columns = tile.x.min(width) as usize..tile.x.saturating_add(tile.width).min(width) as usize;
+            for y in tile.y..tile.y.saturating_add(tile.height).min(height) {
+                let row = &mut times[y as usize * width as usize..][..width as usize];
+                row[columns.clone()].iter_mut().for_each(|count| *count += 1);
+            }
+        }
+        times
+    }
+
+    fn computation(&self, tile: Area, thread: usize) -> Computation {
+        Computation { tile, thread: self.log.threads[thread].1.clone() }
+    }
+}
+
+impl fmt::Debug for Recorder<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Recorder").field("log", &self.log).finish_non_exhaustive()
+    }
+}
+
+impl fmt::Display for Thread {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "thread {}", self.index)?;
+        self.name.as_ref().map_or(Ok(()), |name| write!(f, " (\"{name}\")"))
+    }
+}
+
+impl fmt::Display for Computation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "tile {} by {}", self.tile, self.thread)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Black;
+
+    impl Work for Black {
+        fn render(&self, tile: &mut Tile<'_>) {
+            tile.rows().for_each(|(_, row)| row.fill([0.0; 3]));
+        }
+    }
+
+    #[test]
+    fn tiles_threads_and_pixels() {
+        let recorder = Recorder::new(&Black);
+        let render = |x, y| recorder.render(&mut Tile::row(x, y, &mut [[1.0; 3]; 2]));
+        render(0, 0);
+        thread::scope(|scope| {
+            let named = thread::Builder::new().name("second".to_owned());
+            named.spawn_scoped(scope, || render(1, 0)).expect("a thread");
+        });
+        render(2, 1);
+        let record = recorder.finish();
+
+        assert_eq!(record.threads(), 2);
+        let order: Vec<_> = record.computations().map(|c| (c.tile.x, c.thread.index)).collect();
+        assert_eq!(order, [(0, 0), (1, 1), (2, 0)]);
+        // The row at (2, 1) reaches beyond a picture of 3 x 2.
+        assert_eq!(record.times_computed(3, 2), [1, 2, 1, 0, 0, 1]);
+        let last = record.of_pixel(1, 0).pop().expect("computed");
+        assert_eq!(last.to_string(), "tile 2x1 at (1, 0) by thread 1 (\"second\")");
+        assert_eq!(record.of_pixel(0, 1), []);
+    }
+}

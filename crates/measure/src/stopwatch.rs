@@ -1,0 +1,122 @@
+//! Renders for real and takes the time.
+
+use crate::attempt::attempt;
+use crate::compare::{Entry, Executor, Rendering, Sample};
+use crate::poison;
+use rayweave_core::image::ImageError;
+use rayweave_core::{Image, Plan, Work};
+use std::num::NonZeroU32;
+use std::time::{Duration, Instant};
+
+/// The executor of real renderings of one work. Only [`Renderer::render`] is in the render time.
+///
+/// [`Renderer::render`]: rayweave_core::Renderer::render
+pub struct Stopwatch<'a> {
+    work: &'a dyn Work,
+    tile: NonZeroU32,
+    /// One for all renderings: none of them pays for touching fresh memory.
+    image: Image,
+    begin: Instant,
+}
+
+impl<'a> Stopwatch<'a> {
+    /// Will render `work` into a picture of `width` x `height` pixels by tiles of `tile` pixels a side.
+    ///
+    /// # Errors
+    ///
+    /// There is no such picture.
+    pub fn new(work: &'a dyn Work, width: u32, height: u32, tile: NonZeroU32) -> Result<Self, ImageError> {
+        Ok(Self { work, tile, image: Image::new(width, height)?, begin: Instant::now() })
+    }
+}
+
+impl Executor for Stopwatch<'_> {
+    fn render(&mut self, entry: &Entry<'_>) -> Result<Rendering, String> {
+        let plan = Plan { threads: entry.threads, tile: self.tile };
+        let begin = Instant::now();
+        let mut renderer = attempt(|| entry.strategy.prepare(plan))?;
+        let prepare_ns = nanoseconds(begin.elapsed());
+
+        poison::fill(&mut self.image);
+        let begin = Instant::now();
+        let result = attempt(|| renderer.render(self.work, &mut self.image));
+        let render_ns = nanoseconds(begin.elapsed());
+        result?;
+        Ok(Rendering { sample: Sample { prepare_ns, render_ns }, digest: self.image.digest() })
+    }
+
+    fn elapsed(&self) -> Duration {
+        self.begin.elapsed()
+    }
+}
+
+/// A `u64` of nanoseconds lasts for 584 years.
+fn nanoseconds(duration: Duration) -> u64 {
+    u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rayweave_core::{Renderer, Rgb, Strategy, StrategyError, ThreadsStart, Tile};
+    use std::num::NonZeroUsize;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    const GREY: Rgb = [0.5; 3];
+
+    struct Grey;
+
+    impl Work for Grey {
+        fn render(&self, tile: &mut Tile<'_>) {
+            tile.rows().for_each(|(_, row)| row.fill(GREY));
+        }
+    }
+
+    /// Renders at first, then no more, and at last not even prepares.
+    #[derive(Default)]
+    struct Tires {
+        prepared: AtomicUsize,
+    }
+
+    struct Renders(bool);
+
+    impl Strategy for Tires {
+        fn name(&self) -> &'static str {
+            "tires"
+        }
+
+        fn summary(&self) -> &'static str {
+            "works once"
+        }
+
+        fn threads_start(&self) -> ThreadsStart {
+            ThreadsStart::Never
+        }
+
+        fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
+            let source = std::io::Error::other("tired");
+            match self.prepared.fetch_add(1, Ordering::Relaxed) {
+                earlier @ 0..2 => Ok(Box::new(Renders(earlier == 0))),
+                _ => Err(StrategyError::Spawn { strategy: "tires", threads: plan.threads.get(), source }),
+            }
+        }
+    }
+
+    impl Renderer for Renders {
+        fn render(&mut self, work: &dyn Work, image: &mut Image) -> Result<(), StrategyError> {
+            image.tiles(NonZeroU32::MIN).iter_mut().filter(|_| self.0).for_each(|tile| work.render(tile));
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn an_earlier_picture_does_not_pass_for_a_later_one() {
+        let mut stopwatch = Stopwatch::new(&Grey, 3, 2, NonZeroU32::MIN).expect("a picture");
+        let entry = Entry { strategy: &Tires::default(), threads: NonZeroUsize::MIN };
+        let right = Image::filled(3, 2, GREY).expect("a picture").digest();
+        assert_eq!(stopwatch.render(&entry).map(|rendering| rendering.digest), Ok(right));
+        assert_ne!(stopwatch.render(&entry).map(|rendering| rendering.digest), Ok(right));
+        let error = stopwatch.render(&entry).expect_err("tired");
+        assert!(error.starts_with("tires: cannot start 1 threads: tired"), "{error}");
+    }
+}

@@ -1,0 +1,78 @@
+//! The comparison for spreadsheets: every line stands for itself.
+
+use super::{Report, threads_start};
+use rayweave_measure::compare::{Role, Row};
+use serde::Serialize;
+
+#[derive(Serialize)]
+struct Line<'a> {
+    scene: &'a str,
+    width: u32,
+    height: u32,
+    antialiasing: u32,
+    precision: &'a str,
+    tile: u32,
+    strategy: &'a str,
+    threads: usize,
+    control: bool,
+    identical: bool,
+    digest: Option<String>,
+    samples: usize,
+    median_ns: Option<u64>,
+    speedup: Option<f64>,
+    speedup_low: Option<f64>,
+    speedup_high: Option<f64>,
+    efficiency: Option<f64>,
+    serial_fraction: Option<f64>,
+    threads_start: &'a str,
+    prepare_ns: Option<u64>,
+    error: Option<&'a str>,
+    cpu: &'a str,
+    available_threads: usize,
+    compiler: &'a str,
+    profile: &'a str,
+    commit: &'a str,
+}
+
+pub(super) fn text(report: &Report<'_>) -> String {
+    let mut writer = ::csv::Writer::from_writer(Vec::new());
+    for row in &report.comparison.rows {
+        writer.serialize(line(report, row)).expect("flat structures are CSV, and memory takes them");
+    }
+    let bytes = writer.into_inner().expect("memory takes everything");
+    String::from_utf8(bytes).expect("text in, text out")
+}
+
+fn line<'a>(report: &Report<'a>, row: &'a Row) -> Line<'a> {
+    let Report { subject, machine, .. } = report;
+    let figures = row.figures.as_ref();
+    let speedup = figures.map(|figures| figures.speedup);
+    Line {
+        scene: &subject.scene,
+        width: subject.width,
+        height: subject.height,
+        antialiasing: subject.antialiasing,
+        precision: &subject.precision,
+        tile: subject.tile,
+        strategy: row.strategy,
+        threads: row.threads,
+        control: row.role == Role::Control,
+        identical: row.identical,
+        digest: row.digest.map(|digest| digest.to_string()),
+        samples: row.samples.len(),
+        median_ns: figures.map(|figures| figures.median_ns.round() as u64),
+        speedup: speedup.map(|interval| interval.median),
+        speedup_low: speedup.map(|interval| interval.low),
+        speedup_high: speedup.map(|interval| interval.high),
+        efficiency: figures.map(|figures| figures.efficiency),
+        serial_fraction: figures.and_then(|figures| figures.serial_fraction),
+        threads_start: threads_start(row),
+        prepare_ns: figures.map(|figures| figures.prepare_ns.round() as u64),
+        error: row.error.as_deref(),
+        cpu: &machine.cpu,
+        available_threads: machine.available_threads,
+        compiler: machine.compiler,
+        profile: machine.profile,
+        commit: machine.commit,
+    }
+}

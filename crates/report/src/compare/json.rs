@@ -1,0 +1,95 @@
+//! The comparison for other programs.
+
+use super::{Report, threads_start};
+use crate::machine::Facts;
+use rayweave_measure::compare::{Role, Row};
+use serde::Serialize;
+
+/// It changes when a key changes its meaning or goes.
+const SCHEMA: u32 = 1;
+
+#[derive(Serialize)]
+struct Object<'a> {
+    schema: u32,
+    scene: &'a str,
+    width: u32,
+    height: u32,
+    antialiasing: u32,
+    precision: &'a str,
+    tile: u32,
+    rounds: usize,
+    seed: u64,
+    digest: String,
+    machine: Facts<'a>,
+    results: Vec<Result<'a>>,
+}
+
+#[derive(Serialize)]
+struct Result<'a> {
+    strategy: &'a str,
+    threads: usize,
+    control: bool,
+    identical: bool,
+    digest: Option<String>,
+    median_ns: Option<u64>,
+    samples_ns: Vec<u64>,
+    speedup: Option<Speedup>,
+    efficiency: Option<f64>,
+    serial_fraction: Option<f64>,
+    threads_start: &'a str,
+    prepare_ns: Option<u64>,
+    prepare_samples_ns: Vec<u64>,
+    error: Option<&'a str>,
+}
+
+#[derive(Serialize)]
+struct Speedup {
+    median: f64,
+    low: f64,
+    high: f64,
+}
+
+pub(super) fn text(report: &Report<'_>) -> String {
+    let Report { subject, comparison, machine } = report;
+    to_json(&Object {
+        schema: SCHEMA,
+        scene: &subject.scene,
+        width: subject.width,
+        height: subject.height,
+        antialiasing: subject.antialiasing,
+        precision: &subject.precision,
+        tile: subject.tile,
+        rounds: comparison.rounds,
+        seed: comparison.seed,
+        digest: comparison.digest.to_string(),
+        machine: Facts::new(machine),
+        results: comparison.rows.iter().map(result).collect(),
+    })
+}
+
+fn result(row: &Row) -> Result<'_> {
+    let figures = row.figures.as_ref();
+    let speedup = figures.map(|figures| figures.speedup);
+    Result {
+        strategy: row.strategy,
+        threads: row.threads,
+        control: row.role == Role::Control,
+        identical: row.identical,
+        digest: row.digest.map(|digest| digest.to_string()),
+        median_ns: figures.map(|figures| figures.median_ns.round() as u64),
+        samples_ns: row.samples.iter().map(|sample| sample.render_ns).collect(),
+        speedup: speedup.map(|s| Speedup { median: s.median, low: s.low, high: s.high }),
+        efficiency: figures.map(|figures| figures.efficiency),
+        serial_fraction: figures.and_then(|figures| figures.serial_fraction),
+        threads_start: threads_start(row),
+        prepare_ns: figures.map(|figures| figures.prepare_ns.round() as u64),
+        prepare_samples_ns: row.samples.iter().map(|sample| sample.prepare_ns).collect(),
+        error: row.error.as_deref(),
+    }
+}
+
+/// Indented JSON of one of our own objects.
+pub(crate) fn to_json(object: &impl Serialize) -> String {
+    // It fails only for maps whose keys are not text, and there are no maps.
+    serde_json::to_string_pretty(object).expect("plain structures are JSON")
+}
