@@ -1,1 +1,16 @@
-//! What no single crate can test.
+//! What no single crate can test, and what such tests are made of.
+
+/// The places where the report that this project starts from is wrong, each with a witness.
+pub mod errata;
+/// How far a picture is from the truth.
+pub mod metrics;
+/// The truth: the image model in wide arithmetic, slow and plain.
+pub mod model;
+/// Pictures that no strategy had a hand in.
+pub mod picture;
+/// Scenes that use everything in the model, drawn by seed.
+pub mod random_scene;
+/// The scenes of the repository.
+pub mod scenes;
+/// Scenes enlarged, moved and mirrored.
+pub mod transform;

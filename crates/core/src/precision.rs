@@ -70,12 +70,12 @@ impl fmt::Display for Demand {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { largest, smallest } = self;
         if smallest.is_infinite() {
-            return write!(f, "largest coordinate {largest:.4}, nothing small");
+            return write!(f, "largest coordinate {largest}, nothing small");
         }
+        let ratio = largest / smallest;
         write!(
             f,
-            "largest coordinate {largest:.4}, smallest feature {smallest:.4}, ratio {:.0}; f32 resolves {F32_RATIO}",
-            largest / smallest
+            "largest coordinate {largest:.4} is {ratio:.0} times the smallest feature {smallest:.4} (f32: up to {F32_RATIO})"
         )
     }
 }

@@ -50,10 +50,15 @@ impl Input {
         Image::new(self.width, self.height).map_err(|e: ImageError| e.to_string())
     }
 
-    /// One line that says what is rendered.
+    /// What is rendered, and why in this precision: two lines.
     pub fn describe(&self) -> String {
-        let Self { name, width, height, precision, reason, .. } = self;
+        let Self { name, width, height, .. } = self;
         let antialiasing = self.scene.render.antialiasing;
-        format!("{name}, {width} x {height}, antialiasing {antialiasing}, {precision} ({reason})")
+        format!("{name}, {width} x {height} pixels, antialiasing {antialiasing}\n{}", self.precision_line())
+    }
+
+    /// The precision and its reason.
+    pub fn precision_line(&self) -> String {
+        format!("precision: {}, {}", self.precision, self.reason)
     }
 }

@@ -5,7 +5,6 @@
 
 use rayweave_core::strategy::render_tile;
 use rayweave_core::{StrategyError, Tile, Work};
-use std::num::NonZeroUsize;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::thread;
@@ -17,8 +16,6 @@ pub struct Stop;
 /// One thread of the team.
 #[derive(Debug)]
 pub struct Member<'team> {
-    /// Its number, `0..threads`.
-    pub index: usize,
     team: &'team Team,
 }
 
@@ -29,26 +26,30 @@ struct Team {
     first_error: Mutex<Option<StrategyError>>,
 }
 
-/// Runs `body` on `threads` threads at the same time and waits for all of them.
+/// Runs `body` on one thread for each of `shares`, all at the same time, and waits for them.
+///
+/// A share is what the thread alone works on: a range, slices of the picture, or nothing but a
+/// reference to a queue that all of them take from.
 ///
 /// # Errors
 ///
 /// The first failure of any member: work that panicked, or a thread that could not be started.
 /// The members that run are told to stop at their next tile, and are joined before this returns.
-pub fn run(
+pub fn run<Share: Send>(
     strategy: &'static str,
-    threads: NonZeroUsize,
-    body: impl Fn(&Member<'_>) -> Result<(), Stop> + Sync,
+    shares: impl ExactSizeIterator<Item = Share>,
+    body: impl Fn(&Member<'_>, Share) -> Result<(), Stop> + Sync,
 ) -> Result<(), StrategyError> {
+    let threads = shares.len();
     let team = Team { strategy, stopped: AtomicBool::new(false), first_error: Mutex::new(None) };
     let (team_ref, body) = (&team, &body);
     thread::scope(|scope| {
-        for index in 0..threads.get() {
+        for (index, share) in shares.enumerate() {
             let thread = thread::Builder::new().name(format!("{strategy} {index}"));
-            let member = Member { index, team: team_ref };
+            let member = Member { team: team_ref };
             // A member that returns `Stop` has nothing to add: the failure is with the team.
-            if let Err(source) = thread.spawn_scoped(scope, move || drop(body(&member))) {
-                team_ref.fail(StrategyError::Spawn { strategy, threads: threads.get(), source });
+            if let Err(source) = thread.spawn_scoped(scope, move || drop(body(&member, share))) {
+                team_ref.fail(StrategyError::Spawn { strategy, threads, source });
                 break;
             }
         }

@@ -56,7 +56,7 @@ pub fn run(scene: Option<&Path>, options: &Options) -> Result<Outcome, String> {
         precision: input.precision.to_string(),
     };
     let report = Report { subject: &subject, comparison: &comparison, machine: &Machine::here() };
-    print(&format!("{}\n", report.table().trim_end()))?;
+    print(&format!("{}\n{}\n", report.table(), input.precision_line()))?;
     if let Some(path) = &options.json {
         output::write(path, report.json().as_bytes())?;
     }

@@ -45,10 +45,12 @@ struct StaticShares {
 impl Renderer for StaticShares {
     fn render(&mut self, work: &dyn Work, image: &mut Image) -> Result<(), StrategyError> {
         let (width, pixels) = (image.width() as usize, image.pixels().len());
+        let threads = self.threads.get();
+        let begin = |share: usize| pixels * share / threads;
+        let shares = (0..threads).map(|share| begin(share)..begin(share + 1));
         let image = Mutex::new(image);
-        thread_team::run(NAME, self.threads, |member| {
-            let begin = |share: usize| pixels * share / self.threads;
-            for index in begin(member.index)..begin(member.index + 1) {
+        thread_team::run(NAME, shares, |member, share| {
+            for index in share {
                 // Computed into a place of the thread's own: the lock is held for the copy only.
                 let (x, y) = ((index % width) as u32, (index / width) as u32);
                 let mut color = [0.0; 3];

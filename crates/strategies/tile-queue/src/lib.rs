@@ -14,6 +14,7 @@
 use crossbeam::queue::ArrayQueue;
 use rayweave_core::{Image, Plan, Renderer, Strategy, StrategyError, ThreadsStart, Work};
 use rayweave_thread_team as thread_team;
+use std::iter;
 
 const NAME: &str = "tile-queue";
 
@@ -51,7 +52,8 @@ impl Renderer for Queue {
             // The queue has room for exactly these.
             let _ = queue.push(tile);
         }
-        thread_team::run(NAME, self.plan.threads, |member| {
+        let threads = iter::repeat_n(&queue, self.plan.threads.get());
+        thread_team::run(NAME, threads, |member, queue| {
             while let Some(mut tile) = queue.pop() {
                 member.render_tile(work, &mut tile)?;
             }

@@ -1,0 +1,89 @@
+//! Every command that the documents show is run, so that none of them grows stale.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use tempfile::TempDir;
+
+const DOCUMENTS: [&str; 4] = ["README.md", "ARCHITECTURE.md", "METHODOLOGY.md", "CONTRIBUTING.md"];
+
+/// Commands about the whole repository: CI runs them (`.ci/run`), a test cannot.
+const RUN_BY_CI: [&str; 4] = ["cargo run --release", "cargo test", "cargo bench", ".ci/run"];
+
+/// Its command belongs to the example strategy, which a test of its own builds.
+const EXAMPLE_STRATEGY: &str = "dealt-rows";
+
+fn repository() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// The lines of the blocks of shell commands, without comments.
+fn commands(document: &str) -> Vec<String> {
+    let mut commands = Vec::new();
+    let mut inside = false;
+    for line in document.lines().map(str::trim) {
+        match line.strip_prefix("```") {
+            Some(language) => inside = language == "sh",
+            None if inside => commands.push(line.split('#').next().unwrap_or("").trim().to_owned()),
+            None => {}
+        }
+    }
+    commands.retain(|command| !command.is_empty());
+    commands
+}
+
+/// Small pictures do: what is tested is that the command is understood and succeeds.
+fn small(arguments: &str) -> String {
+    let takes_size = ["render", "check", "compare", "-"].iter().any(|word| arguments.starts_with(word));
+    if takes_size && !arguments.contains("--size") {
+        format!("{arguments} --size 24x18")
+    } else {
+        arguments.to_owned()
+    }
+}
+
+#[test]
+fn the_documents_commands_work() {
+    let folder = TempDir::new().expect("a temporary folder");
+    fs::create_dir(folder.path().join("scenes")).expect("a folder");
+    for entry in fs::read_dir(repository().join("scenes")).expect("the scenes") {
+        let entry = entry.expect("an entry");
+        fs::copy(entry.path(), folder.path().join("scenes").join(entry.file_name())).expect("copied");
+    }
+    let mut run = 0;
+    for document in DOCUMENTS {
+        let text = fs::read_to_string(repository().join(document)).expect("the document");
+        for command in commands(&text) {
+            let is_run_by_ci = RUN_BY_CI.iter().any(|known| command == *known)
+                || command.starts_with("cargo bench ")
+                || command.contains(EXAMPLE_STRATEGY);
+            if is_run_by_ci {
+                continue;
+            }
+            let arguments = command
+                .strip_prefix("cargo run --release -- ")
+                .unwrap_or_else(|| panic!("{document}: no test runs `{command}`"));
+            let output = Command::new(env!("CARGO_BIN_EXE_rayweave"))
+                .args(small(arguments).split_whitespace())
+                .current_dir(folder.path())
+                .output()
+                .expect("the program starts");
+            let said = String::from_utf8_lossy(&output.stderr).into_owned();
+            assert!(output.status.success() && said.is_empty(), "{document}: `{command}`: {said}");
+            run += 1;
+        }
+    }
+    assert!(run >= 5, "only {run} commands were found");
+}
+
+#[test]
+fn the_documents_links_lead_somewhere() {
+    for document in DOCUMENTS {
+        let text = fs::read_to_string(repository().join(document)).expect("the document");
+        for link in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
+            if !link.contains("://") && !link.starts_with('#') {
+                assert!(repository().join(link).exists(), "{document}: {link}");
+            }
+        }
+    }
+}

@@ -1,0 +1,464 @@
+//! Deliberately broken strategies, each of which `check` has to catch with the right pixel named;
+//! and the real ones, which have to pass it, and to survive work that panics.
+
+use rayweave_core::strategy::render_tile;
+use rayweave_core::{Area, Image, Plan, Renderer, Rgb, Strategy, StrategyError, ThreadsStart, Tile, Work};
+use rayweave_measure::{Case, Check, Fault, Finding};
+use rayweave_registry::{STRATEGIES, reference};
+use std::num::{NonZeroU32, NonZeroUsize};
+use std::panic::resume_unwind;
+use std::sync::mpsc;
+use std::thread;
+use std::time::Duration;
+
+/// A picture in which no two pixels are alike.
+struct Gradient;
+
+impl Gradient {
+    fn color(x: u32, y: u32) -> Rgb {
+        [x as f32 + 0.25, y as f32 - 0.5, (x * 31 + y) as f32 / 7.0]
+    }
+}
+
+impl Work for Gradient {
+    fn render(&self, tile: &mut Tile<'_>) {
+        let left = tile.area().x;
+        for (y, row) in tile.rows() {
+            (left..).zip(row).for_each(|(x, color)| *color = Self::color(x, y));
+        }
+    }
+}
+
+const NAME: &str = "broken";
+
+/// A strategy that goes about rendering in its own, wrong way.
+struct Broken(fn(Plan, &dyn Work, &mut Image) -> Result<(), StrategyError>);
+
+impl Strategy for Broken {
+    fn name(&self) -> &'static str {
+        NAME
+    }
+
+    fn summary(&self) -> &'static str {
+        "wrong in one way"
+    }
+
+    fn threads_start(&self) -> ThreadsStart {
+        ThreadsStart::Render
+    }
+
+    fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
+        Ok(Box::new(BrokenRenderer(plan, self.0)))
+    }
+}
+
+struct BrokenRenderer(Plan, fn(Plan, &dyn Work, &mut Image) -> Result<(), StrategyError>);
+
+impl Renderer for BrokenRenderer {
+    fn render(&mut self, work: &dyn Work, image: &mut Image) -> Result<(), StrategyError> {
+        (self.1)(self.0, work, image)
+    }
+}
+
+/// The right way, to break: tile `i` is computed by the thread "share `i % threads`".
+fn share_out(threads: usize, work: &dyn Work, tiles: Vec<Tile<'_>>) -> Result<(), StrategyError> {
+    let mut shares: Vec<Vec<Tile<'_>>> = (0..threads).map(|_| Vec::new()).collect();
+    for (index, tile) in tiles.into_iter().enumerate() {
+        shares[index % threads].push(tile);
+    }
+    thread::scope(|scope| {
+        for (index, mut share) in shares.into_iter().enumerate() {
+            let thread = thread::Builder::new().name(format!("share {index}"));
+            let compute = move || share.iter_mut().try_for_each(|tile| render_tile(NAME, work, tile));
+            thread.spawn_scoped(scope, compute).expect("a thread");
+        }
+    });
+    Ok(())
+}
+
+fn right(plan: Plan, work: &dyn Work, image: &mut Image) -> Result<(), StrategyError> {
+    share_out(plan.threads.get(), work, image.tiles(plan.tile))
+}
+
+/// For a busy machine: nobody waits so long who has the threads.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// For strategies that do not have them, and would make everybody wait.
+const IMPATIENCE: Duration = Duration::from_millis(200);
+
+/// What a check of two threads and tiles of 8 says about a picture of this size.
+fn findings_at(strategy: &dyn Strategy, width: u32, height: u32, timeout: Duration) -> Vec<Finding> {
+    let cases = [Case { name: "gradient".to_owned(), width, height, work: Box::new(Gradient) }];
+    let check = Check {
+        reference: reference(),
+        strategies: &[strategy],
+        cases: &cases,
+        threads: &[threads(2)],
+        tiles: &[tile(8)],
+        timeout,
+    };
+    check.run(|_| {}).expect("a reference picture").findings
+}
+
+/// The same of 20 x 12 pixels, which are three by two tiles, the last column and row smaller.
+fn findings(broken: fn(Plan, &dyn Work, &mut Image) -> Result<(), StrategyError>) -> Vec<Finding> {
+    findings_at(&Broken(broken), 20, 12, PATIENCE)
+}
+
+fn threads(count: usize) -> NonZeroUsize {
+    NonZeroUsize::new(count).expect("not 0")
+}
+
+fn tile(side: u32) -> NonZeroU32 {
+    NonZeroU32::new(side).expect("not 0")
+}
+
+/// The tile that a pixel was computed in, and the name of the thread.
+type By = (Area, Option<String>);
+
+/// The only finding, which has to be a difference: its pixels and its first pixel, what was found
+/// there, in which tile and by whom it was computed.
+#[track_caller]
+fn the_difference(findings: &[Finding]) -> (usize, (u32, u32), Option<Rgb>, Option<By>) {
+    let [Finding { strategy: NAME, threads: 2, picture: Some(picture), fault: Fault::Different(found) }] =
+        findings
+    else {
+        panic!("not a single difference: {findings:#?}");
+    };
+    assert_eq!((picture.scene.as_str(), picture.tile, picture.repetition), ("gradient", 8, 1));
+    assert_eq!(found.expected, Gradient::color(found.x, found.y));
+    let computation =
+        found.computation.clone().map(|computation| (computation.tile, computation.thread.name));
+    (found.pixels, (found.x, found.y), found.found, computation)
+}
+
+#[test]
+fn the_strategy_to_break_is_right() {
+    assert_eq!(findings(right), []);
+}
+
+#[test]
+fn drops_a_row() {
+    let found = findings(|plan, work, image| {
+        let width = image.width() as usize;
+        let rows = image.pixels_mut().chunks_mut(width).enumerate();
+        let rows = rows.filter(|(y, _)| *y != 6).map(|(y, row)| Tile::row(0, y as u32, row)).collect();
+        share_out(plan.threads.get(), work, rows)
+    });
+    assert_eq!(the_difference(&found), (20, (0, 6), None, None));
+}
+
+#[test]
+fn swaps_two_tiles() {
+    let found = findings(|plan, work, image| {
+        right(plan, work, image)?;
+        let mut tiles = image.tiles(plan.tile);
+        if let [_, first, .., second, _, _] = tiles.as_mut_slice() {
+            // The second and fourth of six; they have the first four rows in common.
+            for ((_, a), (_, b)) in first.rows().zip(second.rows()) {
+                a.swap_with_slice(b);
+            }
+        }
+        Ok(())
+    });
+    let area = Area { x: 8, y: 0, width: 8, height: 8 };
+    let by = Some((area, Some("share 1".to_owned())));
+    assert_eq!(the_difference(&found), (64, (8, 0), Some(Gradient::color(0, 8)), by));
+}
+
+#[test]
+fn writes_a_pixel_twice_with_a_torn_value() {
+    let found = findings(|plan, work, image| {
+        right(plan, work, image)?;
+        if image.width() == 20 {
+            let mut color = [0.0; 3];
+            render_tile(NAME, work, &mut Tile::pixel(5, 9, &mut color))?;
+            let [red, _, blue] = color;
+            image.pixels_mut()[9 * 20 + 5] = [red, color[0], blue];
+        }
+        Ok(())
+    });
+    let [different, Finding { fault: Fault::NotOnce { pixels: 1, x: 5, y: 9, computations }, .. }] =
+        found.as_slice()
+    else {
+        panic!("{found:#?}");
+    };
+    let pixel = Area { x: 5, y: 9, width: 1, height: 1 };
+    let tiles: Vec<Area> = computations.iter().map(|computation| computation.tile).collect();
+    assert_eq!(tiles, [Area { x: 0, y: 8, width: 8, height: 4 }, pixel]);
+
+    let [red, _, blue] = Gradient::color(5, 9);
+    let (pixels, first, color, by) = the_difference(std::slice::from_ref(different));
+    assert_eq!((pixels, first, color), (1, (5, 9), Some([red, red, blue])));
+    assert_eq!(by.map(|(tile, _)| tile), Some(pixel), "the last to compute it");
+}
+
+#[test]
+fn computes_a_tile_twice_with_the_same_result() {
+    let found = findings(|plan, work, image| {
+        right(plan, work, image)?;
+        let tiles = image.tiles(plan.tile);
+        if tiles.len() == 6 { share_out(1, work, tiles.into_iter().skip(5).collect()) } else { Ok(()) }
+    });
+    let [Finding { fault: Fault::NotOnce { pixels, x, y, computations }, .. }] = found.as_slice() else {
+        panic!("{found:#?}");
+    };
+    assert_eq!((*pixels, *x, *y), (16, 16, 8));
+    let names: Vec<_> = computations.iter().filter_map(|c| c.thread.name.as_deref()).collect();
+    assert_eq!(names, ["share 1", "share 0"]);
+}
+
+#[test]
+fn stops_early() {
+    let found = findings(|plan, work, image| {
+        let mut tiles = image.tiles(plan.tile);
+        tiles.pop();
+        share_out(plan.threads.get(), work, tiles)
+    });
+    assert_eq!(the_difference(&found), (16, (16, 8), None, None));
+}
+
+#[test]
+fn computes_but_does_not_store() {
+    let found = findings(|plan, work, image| {
+        let mut elsewhere = image.clone();
+        right(plan, work, &mut elsewhere)?;
+        let pixels = image.pixels().len();
+        image.pixels_mut()[..pixels - 3].copy_from_slice(&elsewhere.pixels()[..pixels - 3]);
+        Ok(())
+    });
+    let by = (Area { x: 16, y: 8, width: 4, height: 4 }, Some("share 1".to_owned()));
+    assert_eq!(the_difference(&found), (3, (17, 11), None, Some(by)));
+}
+
+#[test]
+fn computes_with_one_thread_only() {
+    let alone = Broken(|plan, work, image| share_out(1, work, image.tiles(plan.tile)));
+    let found = findings_at(&alone, 20, 12, IMPATIENCE);
+    assert_eq!(faults(&found), [&Fault::Threads { expected: 2, found: 1 }]);
+}
+
+#[test]
+fn computes_with_one_thread_more() {
+    let found = findings(|plan, work, image| share_out(plan.threads.get() + 1, work, image.tiles(plan.tile)));
+    assert_eq!(faults(&found), [&Fault::Threads { expected: 2, found: 3 }]);
+}
+
+#[test]
+fn is_wrong_by_one_ulp_in_one_pixel() {
+    let found = findings(|plan, work, image| {
+        right(plan, work, image)?;
+        if let Some(color) = image.pixels_mut().get_mut(7 * 20 + 13) {
+            color[1] = color[1].next_up();
+        }
+        Ok(())
+    });
+    let [red, green, blue] = Gradient::color(13, 7);
+    let by = (Area { x: 8, y: 0, width: 8, height: 8 }, Some("share 1".to_owned()));
+    assert_eq!(the_difference(&found), (1, (13, 7), Some([red, green.next_up(), blue]), Some(by)));
+}
+
+#[test]
+fn turns_zero_negative() {
+    let found = findings(|plan, work, image| {
+        right(plan, work, image)?;
+        // Equal as numbers: 0 is the blue of the first pixel.
+        image.pixels_mut()[0][2] = -0.0;
+        Ok(())
+    });
+    let (pixels, first, color, _) = the_difference(&found);
+    assert_eq!((pixels, first), (1, (0, 0)));
+    assert!(color.is_some_and(|[_, _, blue]| blue.to_bits() == (-0.0f32).to_bits()));
+}
+
+#[test]
+fn leaves_the_last_column_of_odd_widths() {
+    let forgetful = Broken(|plan, work, image| {
+        let width = image.width() as usize;
+        let rows = image.pixels_mut().chunks_mut(width).enumerate();
+        let rows = rows.map(|(y, row)| Tile::row(0, y as u32, &mut row[..width / 2 * 2])).collect();
+        share_out(plan.threads.get(), work, rows)
+    });
+    assert_eq!(findings_at(&forgetful, 20, 12, PATIENCE), []);
+    assert_eq!(the_difference(&findings_at(&forgetful, 7, 3, PATIENCE)), (3, (6, 0), None, None));
+}
+
+#[test]
+fn returns_an_error() {
+    let failing = Broken(|_, work, image| {
+        // A work that panics, as a strategy sees it.
+        let panics = Panics { work, x: 3, y: 1 };
+        image.tiles(tile(2)).iter_mut().try_for_each(|tile| render_tile(NAME, &panics, tile))
+    });
+    let found = findings_at(&failing, 20, 12, IMPATIENCE);
+    // Once while its threads are counted, once for the picture.
+    let message = "broken: the work panicked in the tile 2x2 at (2, 0): injected".to_owned();
+    assert_eq!(faults(&found), [&Fault::Failed(message.clone()), &Fault::Failed(message)]);
+}
+
+#[test]
+fn lets_a_panic_through() {
+    let found = findings(|_, _, _| resume_unwind(Box::new("out of luck")));
+    let message = "the strategy panicked: out of luck".to_owned();
+    assert_eq!(faults(&found), [&Fault::Failed(message.clone()), &Fault::Failed(message)]);
+}
+
+#[test]
+fn replaces_the_picture_by_a_smaller_one() {
+    let found = findings(|plan, work, image| {
+        right(plan, work, image)?;
+        *image = Image::new(3, 2).expect("a picture");
+        Ok(())
+    });
+    let message = "the picture was replaced by one of 3x2".to_owned();
+    assert_eq!(faults(&found), [&Fault::Failed(message)]);
+}
+
+/// Draws from memory when asked a second time.
+struct Remembers;
+
+impl Strategy for Remembers {
+    fn name(&self) -> &'static str {
+        NAME
+    }
+
+    fn summary(&self) -> &'static str {
+        "computes a picture once"
+    }
+
+    fn threads_start(&self) -> ThreadsStart {
+        ThreadsStart::Render
+    }
+
+    fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
+        Ok(Box::new(Memory { plan, picture: None }))
+    }
+}
+
+struct Memory {
+    plan: Plan,
+    picture: Option<Image>,
+}
+
+impl Renderer for Memory {
+    fn render(&mut self, work: &dyn Work, image: &mut Image) -> Result<(), StrategyError> {
+        if let Some(picture) = &self.picture {
+            image.clone_from(picture);
+            return Ok(());
+        }
+        right(self.plan, work, image)?;
+        self.picture = Some(image.clone());
+        Ok(())
+    }
+}
+
+#[test]
+fn does_not_compute_the_second_time() {
+    let found = findings_at(&Remembers, 20, 12, PATIENCE);
+    assert_eq!(faults(&found), [&Fault::NotOnce { pixels: 240, x: 0, y: 0, computations: Vec::new() }]);
+    assert_eq!(found[0].picture.as_ref().map(|picture| picture.repetition), Some(2));
+}
+
+fn faults(findings: &[Finding]) -> Vec<&Fault> {
+    findings.iter().map(|finding| &finding.fault).collect()
+}
+
+const THREADS: [usize; 6] = [1, 2, 3, 5, 8, 64];
+
+#[test]
+fn the_real_strategies_agree() {
+    let sizes = [(1, 1), (1, 500), (500, 1), (7, 3), (97, 61)];
+    let case =
+        |(width, height)| Case { name: "gradient".to_owned(), width, height, work: Box::new(Gradient) };
+    let check = Check {
+        reference: reference(),
+        strategies: STRATEGIES,
+        cases: &sizes.map(case),
+        threads: &THREADS.map(threads),
+        tiles: &[1, 8, 32, 1000].map(tile),
+        timeout: PATIENCE,
+    };
+    let mut told = 0;
+    let verdict = check
+        .run(|progress| {
+            assert_eq!(progress.done, told);
+            told += 1;
+            assert!(told <= progress.total);
+        })
+        .expect("a reference picture");
+    assert_eq!(verdict.findings, []);
+    let starting = STRATEGIES.iter().filter(|s| s.threads_start() != ThreadsStart::Never).count();
+    let settings = (starting * THREADS.len() + STRATEGIES.len() - starting) * 4;
+    assert_eq!(verdict.compared, settings * sizes.len() * 2);
+    assert_eq!(verdict.compared, told);
+}
+
+/// Work with a fault at one pixel.
+struct Panics<W> {
+    work: W,
+    x: u32,
+    y: u32,
+}
+
+impl<W: Work> Work for Panics<W> {
+    fn render(&self, tile: &mut Tile<'_>) {
+        if tile.area().contains(self.x, self.y) {
+            // A panic, without the message on standard error that `panic!` writes.
+            resume_unwind(Box::new("injected"));
+        }
+        self.work.render(tile);
+    }
+}
+
+#[test]
+fn the_real_strategies_survive_work_that_panics() {
+    let (done, finished) = mpsc::channel();
+    let survive = move || {
+        for strategy in STRATEGIES {
+            for count in THREADS {
+                survives(*strategy, threads(count));
+            }
+        }
+        let _ = done.send(());
+    };
+    let watched = thread::spawn(survive);
+    let result = finished.recv_timeout(Duration::from_secs(120));
+    assert_ne!(result, Err(mpsc::RecvTimeoutError::Timeout), "a strategy hangs");
+    watched.join().expect("every strategy survives");
+}
+
+fn survives(strategy: &dyn Strategy, threads: NonZeroUsize) {
+    let context = format!("{}, {threads} threads", strategy.name());
+    let mut renderer = strategy.prepare(Plan { threads, tile: tile(8) }).expect(&context);
+    let mut image = Image::new(97, 61).expect("a picture");
+    for (x, y) in [(0, 0), (50, 30), (96, 60)] {
+        let error = renderer.render(&Panics { work: Gradient, x, y }, &mut image).expect_err(&context);
+        let StrategyError::Panicked { strategy: name, tile, message } = error else {
+            panic!("{context}: {error}");
+        };
+        assert_eq!((name, message.as_str()), (strategy.name(), "injected"), "{context}");
+        assert!(tile.contains(x, y), "{context}: ({x}, {y}) is not in {tile}");
+
+        image.fill([0.0; 3]);
+        renderer.render(&Gradient, &mut image).expect(&context);
+        let right = (0..61).flat_map(|y| (0..97).map(move |x| Gradient::color(x, y)));
+        assert!(image.pixels().iter().copied().eq(right), "{context}: a wrong picture after the panic");
+    }
+}
+
+#[test]
+fn all_at_once_panics_end_too() {
+    struct AlwaysPanics;
+    impl Work for AlwaysPanics {
+        fn render(&self, _: &mut Tile<'_>) {
+            resume_unwind(Box::new(String::from("always")));
+        }
+    }
+    let mut image = Image::new(97, 61).expect("a picture");
+    for strategy in STRATEGIES {
+        let plan = Plan { threads: threads(8), tile: tile(8) };
+        let mut renderer = strategy.prepare(plan).expect("a renderer");
+        let error = renderer.render(&AlwaysPanics, &mut image).expect_err("a panic").to_string();
+        assert!(error.starts_with(strategy.name()) && error.ends_with(": always"), "{error}");
+    }
+}

@@ -1,0 +1,113 @@
+//! Takes the steps of CONTRIBUTING.md, "How to add a strategy", as they stand there, in a copy of
+//! the workspace. Catches a contract that changed under its description, and any place besides
+//! the registry that has to know a strategy.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// What a copy of the workspace needs to be built.
+const PARTS: [&str; 7] =
+    ["Cargo.toml", "Cargo.lock", "crates", "benches", "tests", "scenes", "CONTRIBUTING.md"];
+
+const STRATEGY: &str = "dealt-rows";
+
+fn repository() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+fn copy(from: &Path, to: &Path) {
+    if from.is_dir() {
+        fs::create_dir_all(to).expect("a folder");
+        for entry in fs::read_dir(from).expect("a folder") {
+            let entry = entry.expect("an entry");
+            if entry.file_name() != "target" {
+                copy(&entry.path(), &to.join(entry.file_name()));
+            }
+        }
+    } else {
+        fs::copy(from, to).expect("a file");
+    }
+}
+
+/// The blocks of `language` in a Markdown text, without the indentation of their list.
+fn blocks(text: &str, language: &str) -> Vec<String> {
+    let fence = format!("```{language}");
+    let mut blocks = Vec::new();
+    let mut lines = text.lines();
+    while let Some(line) = lines.next() {
+        if line.trim() == fence {
+            let indent = line.len() - line.trim_start().len();
+            let body = lines.by_ref().take_while(|line| line.trim() != "```");
+            blocks.push(body.map(|line| line.get(indent..).unwrap_or("").to_owned() + "\n").collect());
+        }
+    }
+    blocks
+}
+
+/// Puts `line` after the one line that is `after`.
+fn insert(file: &Path, after: &str, line: &str) {
+    let text = fs::read_to_string(file).expect("the file");
+    assert_eq!(
+        text.lines().filter(|found| found.trim() == after).count(),
+        1,
+        "{after} in {}",
+        file.display()
+    );
+    fs::write(file, text.replacen(after, &format!("{after}\n{line}"), 1)).expect("written");
+}
+
+fn cargo(workspace: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO"))
+        // Dependencies are many, and here need not be fast.
+        .args(["--config", "profile.dev.package.\"*\".opt-level = 0"])
+        .args(arguments)
+        .current_dir(workspace)
+        // Beside the folder of this build, whose binary other tests are running.
+        .env("CARGO_TARGET_DIR", target_folder())
+        .output()
+        .expect("cargo starts")
+}
+
+/// The folder above `debug/deps`, where this test lies.
+fn target_folder() -> PathBuf {
+    let test = std::env::current_exe().expect("the test's own path");
+    test.ancestors().nth(3).expect("target/debug/deps/test").join("contributing")
+}
+
+#[test]
+fn the_steps_add_a_strategy() {
+    let folder = tempfile::TempDir::new().expect("a temporary folder");
+    let workspace = folder.path();
+    for part in PARTS {
+        copy(&repository().join(part), &workspace.join(part));
+    }
+    let text = fs::read_to_string(workspace.join("CONTRIBUTING.md")).expect("the document");
+    let ([manifest, dependency, member_dependency], [source, registry_line]) =
+        (&blocks(&text, "toml")[..], &blocks(&text, "rust")[..])
+    else {
+        panic!("three blocks of TOML and two of Rust");
+    };
+
+    let strategy = workspace.join("crates/strategies").join(STRATEGY);
+    fs::create_dir_all(strategy.join("src")).expect("a folder");
+    fs::write(strategy.join("Cargo.toml"), manifest).expect("written");
+    fs::write(strategy.join("src/lib.rs"), source).expect("written");
+    insert(&workspace.join("Cargo.toml"), "# One line a strategy.", dependency.trim());
+    insert(&workspace.join("crates/registry/Cargo.toml"), "[dependencies]", member_dependency.trim());
+    // At the end of the slice: after the last strategy that is there.
+    insert(&workspace.join("crates/registry/src/lib.rs"), "&rayweave_tile_queue::TileQueue,", registry_line);
+
+    let run = |arguments: &[&str]| {
+        let output =
+            cargo(workspace, &[&["run", "--offline", "--quiet", "-p", "rayweave", "--"], arguments].concat());
+        let (out, err) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+        assert!(output.status.success(), "{arguments:?}: {out}{err}");
+        // No warning either.
+        assert_eq!(err, "", "{arguments:?}");
+        out.into_owned()
+    };
+    assert!(run(&["strategies"]).lines().any(|line| line.starts_with(STRATEGY)));
+    let check = run(&["check", "--strategy", STRATEGY, "--size", "64x48"]);
+    assert!(check.contains("all identical"), "{check}");
+}

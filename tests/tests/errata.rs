@@ -1,0 +1,136 @@
+//! The slips of the report: on the model that the tracer is compared with, and on the tracer.
+
+use glam::DVec3;
+use rayweave_core::{Precision, Scene, cast};
+use rayweave_tests::errata::{LATTICE, LatticeWitness, RAYS, shadings};
+use rayweave_tests::model::{Primitive, render, samples};
+use rayweave_tests::picture;
+use std::collections::HashSet;
+
+// The model
+
+#[test]
+fn rays_hit_where_they_should() {
+    for witness in RAYS {
+        let what = format!("{}: {}", witness.name, witness.report);
+        let found = witness.primitive.hit(&witness.ray);
+        let (Some(t), Some(expected)) = (found, witness.expected) else {
+            assert_eq!(found.is_some(), witness.expected.is_some(), "{what}: {found:?}");
+            continue;
+        };
+        let point = witness.ray.at(t);
+        let normal = witness.primitive.normal(point);
+        let turned = if normal.dot(witness.ray.direction) > 0.0 { -normal } else { normal };
+        assert!((t / expected.t - 1.0).abs() < 1e-14, "{what}: {t}");
+        assert!(point.distance(expected.point) < 1e-14 * (1.0 + expected.point.length()), "{what}: {point}");
+        assert!(turned.distance(expected.normal) < 1e-13, "{what}: {turned}");
+    }
+}
+
+#[test]
+fn witnesses_agree_with_themselves() {
+    for witness in RAYS {
+        let Some(expected) = witness.expected else { continue };
+        let there = witness.ray.at(expected.t);
+        assert!(there.distance(expected.point) < 1e-14 * (1.0 + there.length()), "{}", witness.name);
+        assert!(expected.normal.is_normalized(), "{}", witness.name);
+        assert!(expected.normal.dot(witness.ray.direction) <= 0.0, "{}", witness.name);
+    }
+    for (name, square) in [("far wall through the open end", 20.0), ("plane's point far aside", 26.0)] {
+        let distance = RAYS.iter().find(|witness| witness.name == name).and_then(|w| w.distance());
+        assert!(distance.is_some_and(|d| (d * d - square).abs() < 1e-13), "{name}: {distance:?}");
+    }
+}
+
+#[test]
+fn colours_are_as_they_should() {
+    for witness in shadings() {
+        assert_eq!(witness.scene.check(), Ok(()), "{}", witness.name);
+        let found = DVec3::from_array(render(&witness.scene, 1, 1)[0]);
+        let error = found.distance(DVec3::from_array(witness.expected));
+        assert!(error < 1e-11, "{}: {}: {found}", witness.name, witness.report);
+    }
+}
+
+#[test]
+fn neighbours_share_their_samples() {
+    let LatticeWitness { size: (width, height), antialiasing, rays, .. } = LATTICE;
+    let offsets: Vec<_> = samples(antialiasing).iter().map(|s| (s.dx, s.dy)).collect();
+    assert_eq!(offsets.len(), 25);
+    // All offsets are multiples of 1/2, so that these sums are exact.
+    let mut points = HashSet::new();
+    for (i, j) in (0..height).flat_map(|j| (0..width).map(move |i| (i, j))) {
+        let centre = (f64::from(i) + 0.5, f64::from(j) + 0.5);
+        points.extend(
+            offsets
+                .iter()
+                .map(|(dx, dy)| (2.0 * (centre.0 + dx)) as i32 * 4096 + (2.0 * (centre.1 + dy)) as i32),
+        );
+    }
+    assert_eq!(points.len() as u64, rays);
+}
+
+// The tracer
+
+const PRECISIONS: [Precision; 2] = [Precision::F32, Precision::F64];
+
+/// How far an answer may be off, relative to its size. Each takes a dozen or so roundings, those of
+/// the witness's decimals among them, and none of them cancels or meets its surface at less than
+/// 20 degrees, but for those whose numbers are exact: 16 units of roundoff. The worst takes 6.
+fn tolerance(precision: Precision) -> f64 {
+    16.0 * match precision {
+        Precision::F32 => f64::from(f32::EPSILON) / 2.0,
+        Precision::F64 => f64::EPSILON / 2.0,
+    }
+}
+
+/// A scene of this one thing.
+fn alone(primitive: Primitive) -> Scene {
+    let mut scene = shadings().swap_remove(0).scene;
+    scene.triangles.clear();
+    match primitive {
+        Primitive::Plane(plane) => scene.planes.push(plane),
+        Primitive::Sphere(sphere) => scene.spheres.push(sphere),
+        Primitive::Triangle(triangle) => scene.triangles.push(triangle),
+        Primitive::Cylinder(cylinder) => scene.cylinders.push(cylinder),
+    }
+    scene
+}
+
+/// Catches each of the report's slips about a hit, in either precision.
+#[test]
+fn the_tracer_s_rays_hit_where_they_should() {
+    for (witness, precision) in RAYS.iter().flat_map(|witness| PRECISIONS.map(|p| (witness, p))) {
+        let what = format!("{} in {precision}: {}", witness.name, witness.report);
+        let scene = alone(witness.primitive);
+        let (origin, direction) = (witness.ray.origin, witness.ray.direction);
+        let found = cast::nearest_hit(&scene, origin, direction, precision).expect(&what);
+        let (Some(hit), Some(expected)) = (found, witness.expected) else {
+            assert_eq!(found.is_some(), witness.expected.is_some(), "{what}: {found:?}");
+            continue;
+        };
+        let tolerance = tolerance(precision);
+        assert!((hit.t / expected.t - 1.0).abs() < tolerance, "{what}: {hit:?}");
+        assert!(hit.point.distance(expected.point) < tolerance * expected.point.length(), "{what}: {hit:?}");
+        assert!(hit.normal.distance(expected.normal) < tolerance, "{what}: {hit:?}");
+        assert_eq!(hit.primitive, 0);
+    }
+}
+
+/// Catches each of the report's slips about a colour, in either precision: along a single ray, and
+/// through the camera into a picture.
+#[test]
+fn the_tracer_s_colours_are_as_they_should() {
+    for (witness, precision) in shadings().iter().flat_map(|witness| PRECISIONS.map(|p| (witness, p))) {
+        let what = format!("{} in {precision}: {}", witness.name, witness.report);
+        let expected = DVec3::from_array(witness.expected);
+        let camera = witness.scene.camera;
+        let view = camera.look_at - camera.position;
+        let seen = cast::color(&witness.scene, camera.position, view, precision).expect(&what);
+        assert!(DVec3::from_array(seen).distance(expected) < tolerance(precision), "{what}: {seen:?}");
+        // Pictures are kept in `f32`.
+        let picture = picture::of_scene(&witness.scene, 1, 1, precision);
+        let pixel = DVec3::from_array(picture.pixels()[0].map(f64::from));
+        assert!(pixel.distance(expected) < tolerance(Precision::F32), "{what}: {pixel}");
+    }
+}

@@ -1,0 +1,100 @@
+//! The repository's rules that no compiler knows.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn repository() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// Every file below `folder` whose name ends so, with its text.
+fn files(folder: &str, ending: &str) -> Vec<(String, String)> {
+    let mut found = Vec::new();
+    let mut folders = vec![repository().join(folder)];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(&folder).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.to_string_lossy().ends_with(ending) {
+                let name = path.strip_prefix(repository()).expect("below").display().to_string();
+                found.push((name, fs::read_to_string(&path).expect("text")));
+            }
+        }
+    }
+    found.sort();
+    assert!(!found.is_empty(), "{folder}: no {ending}");
+    found
+}
+
+fn manifests() -> Vec<(String, String)> {
+    let mut manifests = files("crates", "Cargo.toml");
+    manifests.extend(files("benches", "Cargo.toml"));
+    manifests.extend(files("tests", "Cargo.toml"));
+    manifests
+}
+
+/// `core` starts no thread, opens no file, reads no clock, prints nothing: the contract's half that
+/// has to be the same everywhere.
+#[test]
+fn core_touches_nothing_of_the_machine() {
+    for (name, text) in files("crates/core/src", ".rs") {
+        for word in ["std::thread", "std::fs", "std::time", "std::net", "std::env", "println!", "mul_add"] {
+            assert!(!text.contains(word), "{name}: {word}");
+        }
+    }
+}
+
+/// A strategy that another crate depends on would have to be changed there too.
+#[test]
+fn only_the_registry_names_a_strategy() {
+    let strategies: Vec<String> = files("crates/strategies", "Cargo.toml")
+        .iter()
+        .map(|(name, _)| name.split('/').nth(2).expect("a folder").to_owned())
+        .collect();
+    for (name, text) in manifests() {
+        let is_registry = name.starts_with("crates/registry/");
+        for strategy in &strategies {
+            let depends = text.contains(&format!("rayweave-{strategy}.workspace"));
+            assert_eq!(depends, is_registry, "{name}: rayweave-{strategy}");
+        }
+    }
+    for strategy in rayweave_registry::STRATEGIES {
+        assert!(
+            strategies.iter().any(|folder| folder == strategy.name()),
+            "a folder for {}",
+            strategy.name()
+        );
+    }
+}
+
+#[test]
+fn members_take_versions_lints_and_licence_from_the_workspace() {
+    for (name, text) in manifests() {
+        for line in ["version.workspace", "edition.workspace", "rust-version.workspace", "license.workspace"]
+        {
+            assert!(text.contains(line), "{name}: {line}");
+        }
+        assert!(text.contains("[lints]\nworkspace = true"), "{name}: lints");
+        assert!(!text.contains("version = "), "{name}: a version of its own");
+    }
+}
+
+/// A strategy is read in one sitting, and says what its reader wants to know.
+#[test]
+fn a_strategy_is_short_and_explains_itself() {
+    for (name, text) in files("crates/strategies", "lib.rs") {
+        assert!(text.lines().count() <= 120, "{name}: longer than a page or two");
+        for question in ["What it decides", "What it costs", "When it is right"] {
+            assert!(text.contains(question), "{name}: {question}?");
+        }
+    }
+}
+
+#[test]
+fn no_file_outgrows_its_purpose() {
+    for (name, text) in files("crates", ".rs") {
+        let lines = text.lines().count();
+        assert!(lines <= 450, "{name}: {lines} lines");
+    }
+}
