@@ -42,13 +42,18 @@ pub fn nearest_hit(
 }
 
 fn nearest_hit_in<S: Scalar>(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<Hit> {
-    let ray = Ray::<S> { origin: Vector::rounded(origin), direction: Vector::rounded(direction) };
+    // The longest component is brought near 1 by a power of two, which rounds nothing: the squares
+    // of a very long or short direction would over- or underflow. The renderer's own are unit, or
+    // reach from a point to a light.
+    let (_, exponent) = libm::frexp(direction.abs().max_element());
+    let scaled = direction.to_array().map(|component| libm::scalbn(component, -exponent));
+    let ray = Ray::<S> { origin: Vector::rounded(origin), direction: Vector::rounded(scaled.into()) };
     let primitives = Primitives::new(scene);
     let hit = primitives.nearest(&ray);
     hit.exists().then(|| {
         let at = primitives.surface(hit.primitive, &ray, hit.t);
         Hit {
-            t: hit.t.to_f64(),
+            t: libm::scalbn(hit.t.to_f64(), -exponent),
             primitive: hit.primitive as usize,
             point: at.point.widened(),
             normal: at.normal.widened(),

@@ -6,7 +6,7 @@ use crate::picture::Format;
 use crate::progress::Watched;
 use crate::{Outcome, output, print};
 use clap::Args;
-use rayweave_core::{Plan, Strategy};
+use rayweave_core::{Plan, Strategy, ThreadsStart};
 use rayweave_measure::machine::Machine;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -40,6 +40,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let strategy = arguments.strategy.unwrap_or_else(rayweave_registry::recommended);
     let threads = arguments.threads.unwrap_or_else(all_threads);
     let plan = Plan { threads, tile: arguments.tile.tile };
+    // What has no threads of its own computes on one, whatever was asked for.
+    let computing = if strategy.threads_start() == ThreadsStart::Never { NonZeroUsize::MIN } else { threads };
     let mut picture = input.picture()?;
     let work = input.work(input.width, input.height)?;
     let mut renderer = strategy.prepare(plan).map_err(|e| e.to_string())?;
@@ -52,7 +54,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
 
     output::write(&path, &format.encode(&picture)?)?;
     print(&format!(
-        "{}\n{}, threads: {threads}, {seconds:.3} s, digest {}\n{}\nwritten to {}\n",
+        "{}\n{}, threads: {computing}, {seconds:.3} s, digest {}\n{}\nwritten to {}\n",
         input.describe(),
         strategy.name(),
         picture.digest().short(),
