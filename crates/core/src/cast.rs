@@ -1,5 +1,6 @@
 //! Single rays through the kernel that renders, for tests and for whoever studies it.
 
+use crate::formulas::{Arithmetic, Family, Formulas, Robust, Textbook};
 use crate::lane::Scalar;
 use crate::precision::Precision;
 use crate::primitives::Primitives;
@@ -23,7 +24,7 @@ pub struct Hit {
 }
 
 /// The nearest hit of the ray from `origin` in `direction`, which may have any length. All numbers
-/// are first rounded to `precision`.
+/// are first rounded to its precision.
 ///
 /// # Errors
 ///
@@ -32,16 +33,19 @@ pub fn nearest_hit(
     scene: &Scene,
     origin: DVec3,
     direction: DVec3,
-    precision: Precision,
+    arithmetic: impl Into<Arithmetic>,
 ) -> Result<Option<Hit>, SceneError> {
     scene.check()?;
-    Ok(match precision {
-        Precision::F32 => nearest_hit_in::<f32>(scene, origin, direction),
-        Precision::F64 => nearest_hit_in::<f64>(scene, origin, direction),
+    let Arithmetic { formulas, precision } = arithmetic.into();
+    Ok(match (formulas, precision) {
+        (Formulas::Robust, Precision::F32) => nearest_hit_in::<f32, Robust>(scene, origin, direction),
+        (Formulas::Robust, Precision::F64) => nearest_hit_in::<f64, Robust>(scene, origin, direction),
+        (Formulas::Textbook, Precision::F32) => nearest_hit_in::<f32, Textbook>(scene, origin, direction),
+        (Formulas::Textbook, Precision::F64) => nearest_hit_in::<f64, Textbook>(scene, origin, direction),
     })
 }
 
-fn nearest_hit_in<S: Scalar>(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<Hit> {
+fn nearest_hit_in<S: Scalar, F: Family>(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<Hit> {
     // The longest component is brought near 1 by a power of two, which rounds nothing: the squares
     // of a very long or short direction would over- or underflow. The renderer's own are unit, or
     // reach from a point to a light.
@@ -49,9 +53,9 @@ fn nearest_hit_in<S: Scalar>(scene: &Scene, origin: DVec3, direction: DVec3) -> 
     let scaled = direction.to_array().map(|component| libm::scalbn(component, -exponent));
     let ray = Ray::<S> { origin: Vector::rounded(origin), direction: Vector::rounded(scaled.into()) };
     let primitives = Primitives::new(scene);
-    let hit = primitives.nearest(&ray);
+    let hit = primitives.nearest::<S, F>(&ray);
     hit.exists().then(|| {
-        let at = primitives.surface(hit.primitive, &ray, hit.t);
+        let at = primitives.surface::<S, F>(hit.primitive, &ray, hit.t);
         Hit {
             t: libm::scalbn(hit.t.to_f64(), -exponent),
             primitive: hit.primitive as usize,
@@ -62,7 +66,7 @@ fn nearest_hit_in<S: Scalar>(scene: &Scene, origin: DVec3, direction: DVec3) -> 
 }
 
 /// The colour, linear and not clamped, that comes back along the ray from `origin` in `direction`,
-/// which is made unit. All numbers are first rounded to `precision`.
+/// which is made unit. All numbers are first rounded to its precision.
 ///
 /// # Errors
 ///
@@ -71,17 +75,20 @@ pub fn color(
     scene: &Scene,
     origin: DVec3,
     direction: DVec3,
-    precision: Precision,
+    arithmetic: impl Into<Arithmetic>,
 ) -> Result<[f64; 3], SceneError> {
     scene.check()?;
-    Ok(match precision {
-        Precision::F32 => color_in::<f32>(scene, origin, direction),
-        Precision::F64 => color_in::<f64>(scene, origin, direction),
+    let Arithmetic { formulas, precision } = arithmetic.into();
+    Ok(match (formulas, precision) {
+        (Formulas::Robust, Precision::F32) => color_in::<f32, Robust>(scene, origin, direction),
+        (Formulas::Robust, Precision::F64) => color_in::<f64, Robust>(scene, origin, direction),
+        (Formulas::Textbook, Precision::F32) => color_in::<f32, Textbook>(scene, origin, direction),
+        (Formulas::Textbook, Precision::F64) => color_in::<f64, Textbook>(scene, origin, direction),
     })
 }
 
-fn color_in<S: Scalar>(scene: &Scene, origin: DVec3, direction: DVec3) -> [f64; 3] {
+fn color_in<S: Scalar, F: Family>(scene: &Scene, origin: DVec3, direction: DVec3) -> [f64; 3] {
     let direction = Vector::<S>::rounded(direction).unit();
-    let color = World::new(scene).trace(Ray { origin: Vector::rounded(origin), direction }, true);
+    let color = World::<S, F>::new(scene).trace(Ray { origin: Vector::rounded(origin), direction }, true);
     color.widened().to_array()
 }

@@ -1,6 +1,7 @@
 //! Proof that there is room for packets: a lane of four numbers gives each the bits of one alone.
 
 use crate::camera::Camera;
+use crate::formulas::Robust;
 use crate::lane::{Lane, Mask};
 use crate::scene::{self, RenderSettings, Scene};
 use crate::trace::World;
@@ -172,7 +173,7 @@ fn scene() -> Scene {
 #[test]
 fn four_lanes_give_the_bits_of_one() {
     let scene = scene();
-    let world = World::<f32>::new(&scene);
+    let world = World::<f32, Robust>::new(&scene);
     let camera = Camera::<f32>::new(&scene.camera, 40, 1);
     let bits = |right: f32, down: f32| {
         let color = world.trace(camera.ray(right, down), true);

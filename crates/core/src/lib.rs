@@ -11,6 +11,7 @@
 mod antialiasing;
 mod camera;
 pub mod cast;
+pub mod formulas;
 pub mod image;
 mod lane;
 #[cfg(test)]
@@ -27,6 +28,7 @@ pub mod tracer;
 mod vector;
 pub mod work;
 
+pub use formulas::{Arithmetic, Formulas};
 pub use image::{Area, Digest, Image, Rgb, Tile};
 pub use precision::Precision;
 pub use scene::Scene;

@@ -1,14 +1,15 @@
 //! All primitives of a scene, and the two questions a ray asks of them: what is nearest, and is
 //! anything in between.
 
+use crate::formulas::Family;
 use crate::lane::{Lane, Mask, Scalar};
 use crate::ray::{Ray, miss};
 use crate::scene::Scene;
 use crate::shapes::SurfacePoint;
-use crate::shapes::cylinder::{self, Cylinder};
+use crate::shapes::cylinder::Cylinder;
 use crate::shapes::plane::Plane;
-use crate::shapes::sphere::{self, Sphere};
-use crate::shapes::triangle::{self, Triangle, longest_axis};
+use crate::shapes::sphere::Sphere;
+use crate::shapes::triangle::Triangle;
 use crate::vector::Vector;
 use std::ops::ControlFlow;
 
@@ -59,9 +60,9 @@ impl<S: Scalar> Primitives<S> {
     /// The smallest `t`; of equal ones that of the lowest number, since only a smaller `t` replaces
     /// what was found before.
     #[inline(always)]
-    pub(crate) fn nearest<L: Lane<Scalar = S>>(&self, ray: &Ray<L>) -> Hit<L> {
+    pub(crate) fn nearest<L: Lane<Scalar = S>, F: Family>(&self, ray: &Ray<L>) -> Hit<L> {
         let mut nearest = Hit { t: miss(), primitive: L::splat_index(0) };
-        let _ = self.visit(ray, |number, t: L| {
+        let _ = self.visit::<L, F>(ray, |number, t: L| {
             let nearer = t.lt(nearest.t);
             nearest.t = L::select(nearer, t, nearest.t);
             nearest.primitive = L::select_index(nearer, L::splat_index(number), nearest.primitive);
@@ -72,9 +73,14 @@ impl<S: Scalar> Primitives<S> {
 
     /// The lanes of `wanted` whose ray meets something before `limit`.
     #[inline(always)]
-    pub(crate) fn blocked<L: Lane<Scalar = S>>(&self, ray: &Ray<L>, limit: L, wanted: L::Mask) -> L::Mask {
+    pub(crate) fn blocked<L: Lane<Scalar = S>, F: Family>(
+        &self,
+        ray: &Ray<L>,
+        limit: L,
+        wanted: L::Mask,
+    ) -> L::Mask {
         let mut free = wanted;
-        let _ = self.visit(ray, |_, t: L| {
+        let _ = self.visit::<L, F>(ray, |_, t: L| {
             free = free & !t.lt(limit);
             if free.any() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         });
@@ -83,57 +89,27 @@ impl<S: Scalar> Primitives<S> {
 
     /// Shows the number and the `t` of every primitive, in order, until `found` has seen enough.
     #[inline(always)]
-    fn visit<L: Lane<Scalar = S>>(
+    fn visit<L: Lane<Scalar = S>, F: Family>(
         &self,
         ray: &Ray<L>,
         mut found: impl FnMut(u32, L) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        let mut number = 0;
-        for plane in &self.planes {
-            found(number, plane.intersect(ray))?;
-            number += 1;
+        // A kind that is not there costs a comparison, not what its rays would need.
+        let mut first = 0;
+        if !self.planes.is_empty() {
+            F::planes(&self.planes, ray, &mut |i, t| found(first + i as u32, t))?;
+            first += self.planes.len() as u32;
         }
         if !self.spheres.is_empty() {
-            let aim = sphere::Aim::new(ray);
-            for sphere in &self.spheres {
-                found(number, sphere.intersect(ray, &aim))?;
-                number += 1;
-            }
+            F::spheres(&self.spheres, ray, &mut |i, t| found(first + i as u32, t))?;
+            first += self.spheres.len() as u32;
         }
         if !self.triangles.is_empty() {
-            let [along_x, along_y, along_z] = longest_axis(ray.direction);
-            self.visit_triangles::<L, 0>(ray, along_x, number, &mut found)?;
-            self.visit_triangles::<L, 1>(ray, along_y, number, &mut found)?;
-            self.visit_triangles::<L, 2>(ray, along_z, number, &mut found)?;
-            number += self.triangles.len() as u32;
+            F::triangles(&self.triangles, ray, &mut |i, t| found(first + i as u32, t))?;
+            first += self.triangles.len() as u32;
         }
         if !self.cylinders.is_empty() {
-            let aim = cylinder::Aim::new(ray);
-            for cylinder in &self.cylinders {
-                found(number, cylinder.intersect(ray, &aim))?;
-                number += 1;
-            }
-        }
-        ControlFlow::Continue(())
-    }
-
-    /// The triangles for the rays that are longest along `AXIS`: one ray, or a packet of similar
-    /// ones, takes one of the three.
-    #[inline(always)]
-    fn visit_triangles<L: Lane<Scalar = S>, const AXIS: usize>(
-        &self,
-        ray: &Ray<L>,
-        along: L::Mask,
-        first: u32,
-        found: &mut impl FnMut(u32, L) -> ControlFlow<()>,
-    ) -> ControlFlow<()> {
-        if !along.any() {
-            return ControlFlow::Continue(());
-        }
-        let aim = triangle::Aim::<L, AXIS>::new(ray);
-        for (number, triangle) in (first..).zip(&self.triangles) {
-            let t = triangle.intersect(ray, &aim);
-            found(number, L::select(along, t, miss()))?;
+            F::cylinders(&self.cylinders, ray, &mut |i, t| found(first + i as u32, t))?;
         }
         ControlFlow::Continue(())
     }
@@ -147,8 +123,14 @@ impl<S: Scalar> Primitives<S> {
     /// The point of primitive `number` that the ray hits at `t`, the normal turned against the ray:
     /// surfaces have two sides.
     #[inline(always)]
-    pub(crate) fn surface<L: Lane<Scalar = S>>(&self, number: u32, ray: &Ray<L>, t: L) -> SurfacePoint<L> {
-        let mut at = self.surface_near(number, ray.at(t));
+    pub(crate) fn surface<L: Lane<Scalar = S>, F: Family>(
+        &self,
+        number: u32,
+        ray: &Ray<L>,
+        t: L,
+    ) -> SurfacePoint<L> {
+        let near = ray.at(t);
+        let mut at = F::settle(near, self.surface_near(number, near));
         let behind = L::literal(0.0).lt(at.normal.dot(ray.direction));
         at.normal = Vector::select(behind, -at.normal, at.normal);
         at

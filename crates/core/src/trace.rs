@@ -1,6 +1,7 @@
 //! The colour that a ray brings back: Whitted's recursion (An Improved Illumination Model for
 //! Shaded Display, 1980) as a loop, since a mirror sends on just one ray.
 
+use crate::formulas::Family;
 use crate::lane::{Lane, Mask, Scalar};
 use crate::material::{Finish, Light, Material, power};
 use crate::primitives::{Hit, Primitives};
@@ -8,15 +9,17 @@ use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::shapes::SurfacePoint;
 use crate::vector::Vector;
+use std::marker::PhantomData;
 
-/// A scene in the precision of a picture, ready for rays.
+/// A scene in the precision and with the formulas of a picture, ready for rays.
 #[derive(Debug)]
-pub(crate) struct World<S> {
+pub(crate) struct World<S, F> {
     primitives: Primitives<S>,
     materials: Vec<Material<S>>,
     lights: Vec<Light<S>>,
     background: Vector<S>,
     max_reflections: u32,
+    formulas: PhantomData<F>,
 }
 
 /// A point to be lit: where, how it is turned, how it answers.
@@ -25,7 +28,7 @@ struct Surface<L: Lane> {
     finish: Finish<L>,
 }
 
-impl<S: Scalar> World<S> {
+impl<S: Scalar, F: Family> World<S, F> {
     pub(crate) fn new(scene: &Scene) -> Self {
         Self {
             primitives: Primitives::new(scene),
@@ -33,6 +36,7 @@ impl<S: Scalar> World<S> {
             lights: scene.lights.iter().map(Light::new).collect(),
             background: Vector::rounded(scene.render.background),
             max_reflections: scene.render.max_reflections,
+            formulas: PhantomData,
         }
     }
 
@@ -46,7 +50,7 @@ impl<S: Scalar> World<S> {
         let mut color = Vector::zero();
         let mut share = one;
         for bounce in 0..=self.max_reflections {
-            let hit = self.primitives.nearest(&ray);
+            let hit = self.primitives.nearest::<L, F>(&ray);
             let missed = active & !hit.exists();
             color = Vector::select(missed, color + Vector::splat(self.background) * share, color);
             active = active & hit.exists();
@@ -71,7 +75,7 @@ impl<S: Scalar> World<S> {
     #[inline(always)]
     fn surface<L: Lane<Scalar = S>>(&self, hit: &Hit<L>, ray: &Ray<L>, active: L::Mask) -> Surface<L> {
         let look_up = |number: u32| {
-            let at = self.primitives.surface(number, ray, hit.t);
+            let at = self.primitives.surface::<L, F>(number, ray, hit.t);
             Surface { at, finish: Finish::splat(&self.materials[self.primitives.material(number)]) }
         };
         let mut surface: Option<Surface<L>> = None;
@@ -107,8 +111,8 @@ impl<S: Scalar> World<S> {
             if !above.any() {
                 continue;
             }
-            let shadow_ray = Ray { origin: start, direction: toward };
-            let lit = above & !self.primitives.blocked(&shadow_ray, before_light(), above);
+            let (shadow_ray, limit) = F::shadow_ray(start, toward, to_light, distance);
+            let lit = above & !self.primitives.blocked::<L, F>(&shadow_ray, limit, above);
             if !lit.any() {
                 continue;
             }
@@ -131,14 +135,6 @@ impl<L: Lane> Surface<L> {
             finish: Finish::select(mask, yes.finish, no.finish),
         }
     }
-}
-
-/// The end of a shadow ray whose direction reaches to the light: a little before it, so that a
-/// surface that passes through the light does not hide it. 256 roundings cover the error of `t` in
-/// a surface that the ray meets at an angle above about a hundredth.
-#[inline(always)]
-fn before_light<L: Lane>() -> L {
-    L::literal(1.0 - 256.0 * L::Scalar::ROUNDOFF)
 }
 
 /// The ray that a mirror sends on, of unit direction: the error of each bounce is not kept.

@@ -2,6 +2,7 @@
 
 use crate::antialiasing::Filter;
 use crate::camera::Camera;
+use crate::formulas::{Arithmetic, Family, Formulas, Robust, Textbook};
 use crate::image::{Rgb, Tile};
 use crate::lane::Scalar;
 use crate::precision::Precision;
@@ -10,10 +11,10 @@ use crate::trace::World;
 use crate::vector::Vector;
 use crate::work::Work;
 
-/// A scene ready to be rendered at one size in one precision.
+/// A scene ready to be rendered at one size in one arithmetic.
 #[derive(Debug)]
-struct Tracer<S> {
-    world: World<S>,
+struct Tracer<S, F> {
+    world: World<S, F>,
     camera: Camera<S>,
     filter: Filter<S>,
     width: u32,
@@ -29,16 +30,19 @@ pub fn tracer(
     scene: &Scene,
     width: u32,
     height: u32,
-    precision: Precision,
+    arithmetic: impl Into<Arithmetic>,
 ) -> Result<Box<dyn Work + Send>, SceneError> {
     scene.check()?;
-    Ok(match precision {
-        Precision::F32 => Box::new(Tracer::<f32>::new(scene, width, height)),
-        Precision::F64 => Box::new(Tracer::<f64>::new(scene, width, height)),
+    let Arithmetic { formulas, precision } = arithmetic.into();
+    Ok(match (formulas, precision) {
+        (Formulas::Robust, Precision::F32) => Box::new(Tracer::<f32, Robust>::new(scene, width, height)),
+        (Formulas::Robust, Precision::F64) => Box::new(Tracer::<f64, Robust>::new(scene, width, height)),
+        (Formulas::Textbook, Precision::F32) => Box::new(Tracer::<f32, Textbook>::new(scene, width, height)),
+        (Formulas::Textbook, Precision::F64) => Box::new(Tracer::<f64, Textbook>::new(scene, width, height)),
     })
 }
 
-impl<S: Scalar> Tracer<S> {
+impl<S: Scalar, F: Family> Tracer<S, F> {
     fn new(scene: &Scene, width: u32, height: u32) -> Self {
         let filter = Filter::new(scene.render.antialiasing);
         Self {
@@ -81,7 +85,7 @@ impl<S: Scalar> Tracer<S> {
     }
 }
 
-impl<S: Scalar> Work for Tracer<S> {
+impl<S: Scalar, F: Family> Work for Tracer<S, F> {
     fn render(&self, tile: &mut Tile<'_>) {
         let left = tile.area().x;
         for (y, row) in tile.rows() {

@@ -34,6 +34,15 @@ impl<L: Lane> Vector<L> {
         self.x * other.x + self.y * other.y + self.z * other.z
     }
 
+    #[inline(always)]
+    pub(crate) fn cross(self, other: Self) -> Self {
+        Self::new(
+            self.y * other.z - self.z * other.y,
+            self.z * other.x - self.x * other.z,
+            self.x * other.y - self.y * other.x,
+        )
+    }
+
     /// Component by component.
     #[inline(always)]
     pub(crate) fn scale(self, other: Self) -> Self {

@@ -1,0 +1,101 @@
+//! Two families of formulas for where rays meet shapes, and how they leave them again.
+//!
+//! What a scene means, how it is lit and how often rays bounce is the same for both; they differ in
+//! what rounding does to them. So speed can be held against error.
+
+mod robust;
+mod textbook;
+
+pub(crate) use robust::Robust;
+pub(crate) use textbook::Textbook;
+
+use crate::lane::Lane;
+use crate::precision::Precision;
+use crate::ray::Ray;
+use crate::shapes::SurfacePoint;
+use crate::shapes::cylinder::Cylinder;
+use crate::shapes::plane::Plane;
+use crate::shapes::sphere::Sphere;
+use crate::shapes::triangle::Triangle;
+use crate::vector::Vector;
+use std::fmt::{self, Debug};
+use std::ops::ControlFlow;
+
+/// Which formulas a tracer uses.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Formulas {
+    /// What the lab report writes, its slips mended: `b^2 - 4ac`, a plane and three cross products
+    /// for a triangle, hits nearer than 1e-3 ignored.
+    Textbook,
+    /// Formulas that keep their digits: roots from the closest approach, watertight triangles,
+    /// rays that leave a surface by the error bound of the hit point.
+    #[default]
+    Robust,
+}
+
+/// How a tracer computes: with which formulas, in which number type.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Arithmetic {
+    /// The formulas.
+    pub formulas: Formulas,
+    /// The number type.
+    pub precision: Precision,
+}
+
+/// The robust formulas in this precision.
+impl From<Precision> for Arithmetic {
+    fn from(precision: Precision) -> Self {
+        Self { formulas: Formulas::Robust, precision }
+    }
+}
+
+impl fmt::Display for Formulas {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Textbook => "textbook",
+            Self::Robust => "robust",
+        })
+    }
+}
+
+/// A family of formulas, as the tracer is compiled for it.
+///
+/// Each of the first four shows `found` every shape's place in its slice, in order, and the smallest
+/// `t` that counts as a hit, or [`miss`](crate::ray::miss), until `found` has seen enough.
+pub(crate) trait Family: Debug + Send + Sync + 'static {
+    fn planes<L: Lane>(
+        planes: &[Plane<L::Scalar>],
+        ray: &Ray<L>,
+        found: &mut impl FnMut(usize, L) -> ControlFlow<()>,
+    ) -> ControlFlow<()>;
+
+    fn spheres<L: Lane>(
+        spheres: &[Sphere<L::Scalar>],
+        ray: &Ray<L>,
+        found: &mut impl FnMut(usize, L) -> ControlFlow<()>,
+    ) -> ControlFlow<()>;
+
+    fn triangles<L: Lane>(
+        triangles: &[Triangle<L::Scalar>],
+        ray: &Ray<L>,
+        found: &mut impl FnMut(usize, L) -> ControlFlow<()>,
+    ) -> ControlFlow<()>;
+
+    fn cylinders<L: Lane>(
+        cylinders: &[Cylinder<L::Scalar>],
+        ray: &Ray<L>,
+        found: &mut impl FnMut(usize, L) -> ControlFlow<()>,
+    ) -> ControlFlow<()>;
+
+    /// What becomes of the hit `near` a surface, given the surface's own point next to it.
+    fn settle<L: Lane>(near: Vector<L>, on_surface: SurfacePoint<L>) -> SurfacePoint<L>;
+
+    /// The ray from `start` to a light, which is `toward` away in the direction `to_light`, and the
+    /// `t` that a surface has to be nearer than to hide the light.
+    fn shadow_ray<L: Lane>(
+        start: Vector<L>,
+        toward: Vector<L>,
+        to_light: Vector<L>,
+        distance: L,
+    ) -> (Ray<L>, L);
+}

@@ -1,0 +1,134 @@
+//! The formulas of the lab report, its slips mended: to see what they cost, and what they cost not.
+
+use super::Family;
+use crate::lane::{Lane, Mask};
+use crate::ray::{Ray, miss};
+use crate::shapes::SurfacePoint;
+use crate::shapes::cylinder::Cylinder;
+use crate::shapes::plane::Plane;
+use crate::shapes::sphere::Sphere;
+use crate::shapes::triangle::Triangle;
+use crate::vector::Vector;
+use std::ops::ControlFlow;
+
+/// The family of [`Formulas::Textbook`](super::Formulas::Textbook).
+#[derive(Debug)]
+pub(crate) struct Textbook;
+
+/// The report's constant: a hit nearer than this is the surface that the ray comes from. It is a
+/// length in scene units, so it is right for scenes of one scale only.
+const OFFSET: f64 = 1e-3;
+
+impl Family for Textbook {
+    #[inline(always)]
+    fn planes<L: Lane>(
+        planes: &[Plane<L::Scalar>],
+        ray: &Ray<L>,
+        found: &mut impl FnMut(usize, L) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        planes.iter().enumerate().try_for_each(|(i, plane)| {
+            let t = plane_root(Vector::splat(plane.point), Vector::splat(plane.normal), ray);
+            found(i, L::select(beyond_offset(t), t, miss()))
+        })
+    }
+
+    #[inline(always)]
+    fn spheres<L: Lane>(
+        spheres: &[Sphere<L::Scalar>],
+        ray: &Ray<L>,
+        found: &mut impl FnMut(usize, L) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        spheres.iter().enumerate().try_for_each(|(i, sphere)| {
+            let from_center = ray.origin - Vector::splat(sphere.center);
+            let a = ray.direction.dot(ray.direction);
+            let b = L::literal(2.0) * from_center.dot(ray.direction);
+            let c = from_center.dot(from_center) - L::splat(sphere.radius * sphere.radius);
+            found(i, first_root(a, b, c, beyond_offset))
+        })
+    }
+
+    /// The plane, then on which side of each edge the point lies: three cross products.
+    #[inline(always)]
+    fn triangles<L: Lane>(
+        triangles: &[Triangle<L::Scalar>],
+        ray: &Ray<L>,
+        found: &mut impl FnMut(usize, L) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        triangles.iter().enumerate().try_for_each(|(i, triangle)| {
+            let [a, b, c] = triangle.vertices.map(Vector::splat);
+            let normal = Vector::splat(triangle.normal);
+            let t = plane_root(a, normal, ray);
+            let in_front = beyond_offset(t);
+            if !in_front.any() {
+                return found(i, miss());
+            }
+            let point = ray.at(t);
+            let within = |from: Vector<L>, to: Vector<L>| {
+                L::literal(0.0).le(normal.dot((to - from).cross(point - from)))
+            };
+            found(i, L::select(in_front & within(a, b) & within(b, c) & within(c, a), t, miss()))
+        })
+    }
+
+    #[inline(always)]
+    fn cylinders<L: Lane>(
+        cylinders: &[Cylinder<L::Scalar>],
+        ray: &Ray<L>,
+        found: &mut impl FnMut(usize, L) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        cylinders.iter().enumerate().try_for_each(|(i, cylinder)| {
+            let (bottom, top) = (Vector::splat(cylinder.bottom), L::splat(cylinder.top));
+            let (x, z) = (ray.origin.x - bottom.x, ray.origin.z - bottom.z);
+            let Vector { x: dx, y: dy, z: dz } = ray.direction;
+            let a = dx * dx + dz * dz;
+            let b = L::literal(2.0) * (x * dx + z * dz);
+            let c = x * x + z * z - L::splat(cylinder.radius * cylinder.radius);
+            let on_wall = |t: L| {
+                let y = ray.origin.y + dy * t;
+                beyond_offset(t) & bottom.y.le(y) & y.le(top)
+            };
+            found(i, first_root(a, b, c, on_wall))
+        })
+    }
+
+    /// The hit stays where `t` says, and rays leave from there.
+    #[inline(always)]
+    fn settle<L: Lane>(near: Vector<L>, on_surface: SurfacePoint<L>) -> SurfacePoint<L> {
+        SurfacePoint { point: near, clearance: L::literal(0.0), ..on_surface }
+    }
+
+    #[inline(always)]
+    fn shadow_ray<L: Lane>(
+        start: Vector<L>,
+        _toward: Vector<L>,
+        to_light: Vector<L>,
+        distance: L,
+    ) -> (Ray<L>, L) {
+        (Ray { origin: start, direction: to_light }, distance - L::literal(OFFSET))
+    }
+}
+
+#[inline(always)]
+fn beyond_offset<L: Lane>(t: L) -> L::Mask {
+    L::literal(OFFSET).lt(t)
+}
+
+#[inline(always)]
+fn plane_root<L: Lane>(point: Vector<L>, normal: Vector<L>, ray: &Ray<L>) -> L {
+    normal.dot(point - ray.origin) / normal.dot(ray.direction)
+}
+
+/// The smaller of the roots of `a t^2 + b t + c` that counts. A ray along a cylinder's axis has
+/// `a = 0`, and NaN or infinities for roots.
+#[inline(always)]
+fn first_root<L: Lane>(a: L, b: L, c: L, counts: impl Fn(L) -> L::Mask) -> L {
+    let discriminant = b * b - L::literal(4.0) * a * c;
+    let real = L::literal(0.0).le(discriminant);
+    if !real.any() {
+        return miss();
+    }
+    let (root, twice_a) = (discriminant.sqrt(), L::literal(2.0) * a);
+    let (near, far) = ((-b - root) / twice_a, (-b + root) / twice_a);
+    let t = L::select(counts(near), near, L::select(counts(far), far, miss()));
+    L::select(real, t, miss())
+}
