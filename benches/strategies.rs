@@ -34,6 +34,8 @@ fn strategies(criterion: &mut Criterion) {
             for &threads in if alone { &[1][..] } else { &counts } {
                 let plan = Plan { threads: NonZeroUsize::new(threads).expect("not 0"), tile: TILE };
                 let mut renderer = strategy.prepare(plan).expect("the strategy is available");
+                // Poisoned: what a strategy does not write is not the picture of the one before it.
+                image.fill([f32::NAN; 3]);
                 let mut ran = false;
                 group.bench_function(BenchmarkId::new(strategy.name(), threads), |bencher| {
                     ran = true;

@@ -178,10 +178,12 @@ fn writes_a_pixel_twice_with_a_torn_value() {
         }
         Ok(())
     });
-    let [different, Finding { fault: Fault::NotOnce { pixels: 1, x: 5, y: 9, computations }, .. }] =
-        found.as_slice()
-    else {
+    let [different, twice, third_thread] = found.as_slice() else {
         panic!("{found:#?}");
+    };
+    assert_eq!(third_thread.fault, Fault::Threads { expected: 2, found: 3 });
+    let Fault::NotOnce { pixels: 1, x: 5, y: 9, computations } = &twice.fault else {
+        panic!("{twice:#?}");
     };
     let pixel = Area { x: 5, y: 9, width: 1, height: 1 };
     let tiles: Vec<Area> = computations.iter().map(|computation| computation.tile).collect();
@@ -200,9 +202,12 @@ fn computes_a_tile_twice_with_the_same_result() {
         let tiles = image.tiles(plan.tile);
         if tiles.len() == 6 { share_out(1, work, tiles.into_iter().skip(5).collect()) } else { Ok(()) }
     });
-    let [Finding { fault: Fault::NotOnce { pixels, x, y, computations }, .. }] = found.as_slice() else {
+    let [Finding { fault: Fault::NotOnce { pixels, x, y, computations }, .. }, third_thread] =
+        found.as_slice()
+    else {
         panic!("{found:#?}");
     };
+    assert_eq!(third_thread.fault, Fault::Threads { expected: 2, found: 3 });
     assert_eq!((*pixels, *x, *y), (16, 16, 8));
     let names: Vec<_> = computations.iter().filter_map(|c| c.thread.name.as_deref()).collect();
     assert_eq!(names, ["share 1", "share 0"]);
@@ -241,7 +246,75 @@ fn computes_with_one_thread_only() {
 #[test]
 fn computes_with_one_thread_more() {
     let found = findings(|plan, work, image| share_out(plan.threads.get() + 1, work, image.tiles(plan.tile)));
+    // Once while its threads are counted, once for the picture.
+    assert_eq!(faults(&found), [&Fault::Threads { expected: 2, found: 3 }; 2]);
+}
+
+#[test]
+fn joins_one_thread_before_the_next() {
+    let one_after_another = Broken(|plan, work, image| {
+        let mut tiles = image.tiles(plan.tile);
+        let share = tiles.len().div_ceil(plan.threads.get());
+        for tiles in tiles.chunks_mut(share) {
+            let compute = || tiles.iter_mut().try_for_each(|tile| render_tile(NAME, work, tile));
+            thread::scope(|scope| scope.spawn(compute).join()).expect("no panic")?;
+        }
+        Ok(())
+    });
+    let found = findings_at(&one_after_another, 20, 12, IMPATIENCE);
+    assert_eq!(faults(&found), [&Fault::Threads { expected: 2, found: 1 }]);
+}
+
+#[test]
+fn computes_with_one_thread_whenever_tiles_are_larger_than_a_pixel() {
+    let alone = Broken(|plan, work, image| {
+        let threads = if plan.tile.get() > 1 { 1 } else { plan.threads.get() };
+        share_out(threads, work, image.tiles(plan.tile))
+    });
+    let found = findings_at(&alone, 20, 12, IMPATIENCE);
+    let message = "broken, 2 threads, rendezvous 8x32, tiles of 8: computing threads: expected 2, found 1";
+    assert_eq!(found.iter().map(Finding::to_string).collect::<Vec<_>>(), [message]);
+}
+
+#[test]
+fn computes_with_six_threads_whenever_tiles_are_larger_than_a_pixel() {
+    let crowd = |plan: Plan, work: &dyn Work, image: &mut Image| {
+        let threads = if plan.tile.get() > 1 { 6 } else { plan.threads.get() };
+        share_out(threads, work, image.tiles(plan.tile))
+    };
+    // There are four tiles to meet over, so no more than four threads meet; the picture has six.
+    let found = findings(crowd);
+    let expected = [4, 6].map(|found| Fault::Threads { expected: 2, found });
+    assert_eq!(faults(&found), expected.iter().collect::<Vec<_>>());
+}
+
+/// Right whenever its threads are counted: only the picture's own threads give it away.
+#[test]
+fn computes_with_one_thread_more_for_one_size_of_picture() {
+    let found = findings(|plan, work, image| {
+        let threads = plan.threads.get() + usize::from(image.width() == 20);
+        share_out(threads, work, image.tiles(plan.tile))
+    });
     assert_eq!(faults(&found), [&Fault::Threads { expected: 2, found: 3 }]);
+    assert_eq!(found[0].picture.as_ref().map(|picture| picture.scene.as_str()), Some("gradient"));
+}
+
+/// A strategy with too few threads makes a check wait once for each number of threads, not for each
+/// size of tile too.
+#[test]
+fn is_not_waited_for_again_with_other_tiles() {
+    let alone = Broken(|plan, work, image| share_out(1, work, image.tiles(plan.tile)));
+    let check = Check {
+        reference: reference(),
+        strategies: &[&alone],
+        cases: &[],
+        threads: &[threads(2), threads(3)],
+        tiles: &[tile(1), tile(8)],
+        timeout: IMPATIENCE,
+    };
+    let found = check.run(|_| {}).expect("a reference picture").findings;
+    let expected = [2, 3].map(|expected| Fault::Threads { expected, found: 1 });
+    assert_eq!(faults(&found), expected.iter().collect::<Vec<_>>());
 }
 
 #[test]

@@ -13,25 +13,27 @@ use crate::vector::Vector;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Camera<S> {
     position: Vector<S>,
-    /// From the eye to the middle of the screen.
+    /// The unit direction of the middle of the screen.
     forward: Vector<S>,
-    /// Half a lattice step to the right on the screen.
+    /// Half a lattice step to the right, on a screen at distance 1.
     right: Vector<S>,
-    /// Half a lattice step downwards on the screen.
+    /// Half a lattice step downwards, on a screen at distance 1.
     down: Vector<S>,
 }
 
 impl<S: Scalar> Camera<S> {
-    /// For `width` x `height` pixels with `density` lattice steps a pixel.
+    /// For pictures `width` pixels wide with `density` lattice steps a pixel.
     pub(crate) fn new(camera: &scene::Camera, width: u32, density: u32) -> Self {
         let view = unit(camera.look_at - camera.position);
         let right = unit(view.cross(unit(camera.up)));
         let up = right.cross(view);
-        // Pixels are square: the step is the same in both directions.
-        let half_step = camera.screen_width / (2.0 * f64::from(density) * f64::from(width));
+        // Pixels are square: the step is the same in both directions. Only the ratio of the screen
+        // to its distance matters, so no number is as large or small as these may be.
+        let screen_width = camera.screen_width / camera.focal_length;
+        let half_step = screen_width / (2.0 * f64::from(density) * f64::from(width));
         Self {
             position: Vector::rounded(camera.position),
-            forward: Vector::rounded(view * camera.focal_length),
+            forward: Vector::rounded(view),
             right: Vector::rounded(right * half_step),
             down: Vector::rounded(-up * half_step),
         }

@@ -23,8 +23,9 @@ pub struct Hit {
     pub normal: DVec3,
 }
 
-/// The nearest hit of the ray from `origin` in `direction`, which may have any length. All numbers
-/// are first rounded to its precision.
+/// The nearest hit of the ray from `origin` in `direction`, which may have any length but 0. All
+/// numbers are first rounded to the precision. A zero direction, or one that is not finite, hits
+/// nothing.
 ///
 /// # Errors
 ///
@@ -66,7 +67,7 @@ fn nearest_hit_in<S: Scalar, F: Family>(scene: &Scene, origin: DVec3, direction:
 }
 
 /// The colour, linear and not clamped, that comes back along the ray from `origin` in `direction`,
-/// which is made unit. All numbers are first rounded to its precision.
+/// which is made unit. All numbers are first rounded to the precision.
 ///
 /// # Errors
 ///

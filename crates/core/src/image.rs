@@ -128,21 +128,19 @@ impl Image {
     pub fn tiles(&mut self, size: NonZeroU32) -> Vec<Tile<'_>> {
         let (width, size) = (self.width as usize, size.get().min(self.width.max(self.height)));
         let mut tiles = Vec::new();
-        for (band, pixels) in self.pixels.chunks_mut(width * size as usize).enumerate() {
-            let height = pixels.len() / width;
+        for (y, band) in
+            (0..self.height).step_by(size as usize).zip(self.pixels.chunks_mut(width * size as usize))
+        {
+            let height = band.len() / width;
             let first = tiles.len();
-            tiles.extend((0..self.width).step_by(size as usize).map(|x| Tile {
-                area: Area {
-                    x,
-                    y: band as u32 * size,
-                    width: size.min(self.width - x),
-                    height: height as u32,
-                },
-                rows: Rows::Many(Vec::with_capacity(height)),
-            }));
-            for row in pixels.chunks_mut(width) {
-                for (tile, slice) in tiles[first..].iter_mut().zip(row.chunks_mut(size as usize)) {
-                    tile.rows.push(slice);
+            for (j, row) in band.chunks_mut(width).enumerate() {
+                for (i, (x, slice)) in
+                    (0..self.width).step_by(size as usize).zip(row.chunks_mut(size as usize)).enumerate()
+                {
+                    match j {
+                        0 => tiles.push(Tile::of_rows(x, y, slice, height)),
+                        _ => tiles[first + i].rows.push(slice),
+                    }
                 }
             }
         }
@@ -223,7 +221,8 @@ impl Area {
     /// Whether pixel `(x, y)` is in it.
     #[must_use]
     pub fn contains(&self, x: u32, y: u32) -> bool {
-        (self.x..self.x + self.width).contains(&x) && (self.y..self.y + self.height).contains(&y)
+        // Wrapping: what lies before it becomes far too large.
+        x.wrapping_sub(self.x) < self.width && y.wrapping_sub(self.y) < self.height
     }
 }
 
@@ -254,11 +253,23 @@ impl<'a> Tile<'a> {
         Self::row(x, y, std::slice::from_mut(color))
     }
 
-    /// The tile of the pixels from `(x, y)` to the right, wherever their colours are kept.
+    /// The tile of the pixels from `(x, y)` to the right, wherever their colours are kept: as many
+    /// as there are colours, 65,535 at the most in a picture that a scene may ask for.
     #[must_use]
     pub fn row(x: u32, y: u32, colors: &'a mut [Rgb]) -> Self {
         let area = Area { x, y, width: colors.len() as u32, height: 1 };
         Self { area, rows: Rows::One(colors) }
+    }
+
+    /// A tile of `height` rows, so far with the first of them.
+    fn of_rows(x: u32, y: u32, first: &'a mut [Rgb], height: usize) -> Self {
+        let area = Area { x, y, width: first.len() as u32, height: height as u32 };
+        if height == 1 {
+            return Self { area, rows: Rows::One(first) };
+        }
+        let mut rows = Vec::with_capacity(height);
+        rows.push(first);
+        Self { area, rows: Rows::Many(rows) }
     }
 
     /// Which pixels of the picture these are.

@@ -93,6 +93,9 @@ impl Lane for Quad {
     fn abs(self) -> Self {
         Self(self.0.map(f32::abs))
     }
+    fn min(self, other: Self) -> Self {
+        self.map(other, Lane::min)
+    }
     fn max(self, other: Self) -> Self {
         self.map(other, Lane::max)
     }

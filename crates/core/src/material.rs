@@ -18,6 +18,8 @@ pub(crate) struct Material<S> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Light<S> {
     pub(crate) position: Vector<S>,
+    /// The sum of the magnitudes of its coordinates: rounding errors near it are in proportion.
+    pub(crate) reach: S,
     /// Colour times power.
     pub(crate) intensity: Vector<S>,
 }
@@ -37,8 +39,10 @@ impl<S: Scalar> Material<S> {
 
 impl<S: Scalar> Light<S> {
     pub(crate) fn new(light: &scene::Light) -> Self {
+        let position = Vector::rounded(light.position);
         Self {
-            position: Vector::rounded(light.position),
+            position,
+            reach: position.sum_of_magnitudes(),
             intensity: Vector::rounded(light.color * light.power),
         }
     }

@@ -190,12 +190,6 @@ impl Scene {
         check_all("triangle", &self.triangles, |t| t.check().and(known(t.material)))?;
         check_all("cylinder", &self.cylinders, |c| c.check().and(known(c.material)))
     }
-
-    /// The number of primitives of all kinds.
-    #[must_use]
-    pub fn primitive_count(&self) -> usize {
-        self.planes.len() + self.spheres.len() + self.triangles.len() + self.cylinders.len()
-    }
 }
 
 impl Camera {

@@ -41,9 +41,11 @@ pub trait Renderer {
 /// What a strategy is prepared for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Plan {
-    /// The number of computing threads, whether or not the caller's is one of them.
+    /// The number of computing threads, whether or not the caller's is one of them. What a strategy
+    /// deals out has to give each of them something in a picture of twice as many tiles.
     pub threads: NonZeroUsize,
-    /// The side of a tile in pixels, for the strategies that deal in tiles.
+    /// The side of a tile in pixels, for the strategies that deal in tiles. Each tile takes memory:
+    /// some 40 bytes, and 16 a row.
     pub tile: NonZeroU32,
 }
 
@@ -101,7 +103,9 @@ pub fn render_tile(
     })
 }
 
-fn panic_message(payload: &(dyn Any + Send)) -> String {
+/// What a panic said, from what `catch_unwind` or `join` gave.
+#[must_use]
+pub fn panic_message(payload: &(dyn Any + Send)) -> String {
     let text = payload.downcast_ref::<&str>().copied();
     let text = text.or_else(|| payload.downcast_ref::<String>().map(String::as_str));
     text.unwrap_or("(a panic without a message)").to_owned()

@@ -1,7 +1,7 @@
 //! The colour that a ray brings back: Whitted's recursion (An Improved Illumination Model for
 //! Shaded Display, 1980) as a loop, since a mirror sends on just one ray.
 
-use crate::formulas::Family;
+use crate::formulas::{Family, LightPath};
 use crate::lane::{Lane, Mask, Scalar};
 use crate::material::{Finish, Light, Material, power};
 use crate::primitives::{Hit, Primitives};
@@ -59,8 +59,10 @@ impl<S: Scalar, F: Family> World<S, F> {
             }
             let surface = self.surface(&hit, &ray, active);
             let kept = one - surface.finish.reflection;
-            let lit = self.shade(&surface, &ray, active);
-            color = Vector::select(active, color + lit * (share * kept), color);
+            // A full mirror has no light of its own to look for.
+            let shown = active & zero.lt(kept);
+            let lit = self.shade(&surface, &ray, shown);
+            color = Vector::select(shown, color + lit * (share * kept), color);
             active = active & zero.lt(surface.finish.reflection);
             if bounce == self.max_reflections || !active.any() {
                 break;
@@ -98,6 +100,7 @@ impl<S: Scalar, F: Family> World<S, F> {
         let (zero, two) = (L::literal(0.0), L::literal(2.0));
         let Surface { at, finish } = surface;
         let start = at.start();
+        let start_reach = start.sum_of_magnitudes();
         let facing = at.normal.dot(ray.direction);
         let mut color = finish.color * finish.ambient;
         for light in &self.lights {
@@ -105,13 +108,16 @@ impl<S: Scalar, F: Family> World<S, F> {
             // in the surface itself then stands below it, and no rounding makes it shine.
             let toward = Vector::splat(light.position) - start;
             let distance = toward.dot(toward).sqrt();
-            let to_light = toward * (L::literal(1.0) / distance);
+            let inverse_distance = L::literal(1.0) / distance;
+            let to_light = toward * inverse_distance;
             let cosine = at.normal.dot(to_light);
             let above = active & zero.lt(cosine);
             if !above.any() {
                 continue;
             }
-            let (shadow_ray, limit) = F::shadow_ray(start, toward, to_light, distance);
+            let reach = start_reach + L::splat(light.reach);
+            let path = LightPath { start, toward, to_light, distance, inverse_distance, reach };
+            let (shadow_ray, limit) = F::shadow_ray(&path);
             let lit = above & !self.primitives.blocked::<L, F>(&shadow_ray, limit, above);
             if !lit.any() {
                 continue;

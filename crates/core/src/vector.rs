@@ -55,6 +55,11 @@ impl<L: Lane> Vector<L> {
     }
 
     #[inline(always)]
+    pub(crate) fn sum_of_magnitudes(self) -> L {
+        self.x.abs() + self.y.abs() + self.z.abs()
+    }
+
+    #[inline(always)]
     pub(crate) fn unit(self) -> Self {
         self * (L::literal(1.0) / self.dot(self).sqrt())
     }

@@ -1,9 +1,9 @@
 //! From the options to a scene that is ready to be rendered.
 
-use crate::options::{PrecisionOption, SceneOptions};
+use crate::options::{FormulasOption, PrecisionOption, SceneOptions};
 use rayweave_core::image::ImageError;
 use rayweave_core::precision::Demand;
-use rayweave_core::{Image, Precision, Scene, Work, tracer};
+use rayweave_core::{Arithmetic, Formulas, Image, Precision, Scene, Work, tracer};
 use rayweave_scene_file as scene_file;
 use std::path::Path;
 
@@ -16,7 +16,7 @@ pub struct Input {
     pub width: u32,
     /// In pixels.
     pub height: u32,
-    pub precision: Precision,
+    pub arithmetic: Arithmetic,
     /// Why this precision.
     pub reason: String,
 }
@@ -37,12 +37,16 @@ impl Input {
             PrecisionOption::F32 => (Precision::F32, "as asked for".to_owned()),
             PrecisionOption::F64 => (Precision::F64, "as asked for".to_owned()),
         };
-        Ok(Self { name, scene, width, height, precision, reason })
+        let formulas = match options.formulas {
+            FormulasOption::Textbook => Formulas::Textbook,
+            FormulasOption::Robust => Formulas::Robust,
+        };
+        Ok(Self { name, scene, width, height, arithmetic: Arithmetic { formulas, precision }, reason })
     }
 
     /// The work of rendering the scene at this size.
     pub fn work(&self, width: u32, height: u32) -> Result<Box<dyn Work + Send>, String> {
-        tracer(&self.scene, width, height, self.precision).map_err(|e| format!("{}: {e}", self.name))
+        tracer(&self.scene, width, height, self.arithmetic).map_err(|e| format!("{}: {e}", self.name))
     }
 
     /// A black picture of the size asked for.
@@ -50,15 +54,16 @@ impl Input {
         Image::new(self.width, self.height).map_err(|e: ImageError| e.to_string())
     }
 
-    /// What is rendered, and why in this precision: two lines.
+    /// What is rendered, and how: two lines.
     pub fn describe(&self) -> String {
         let Self { name, width, height, .. } = self;
         let antialiasing = self.scene.render.antialiasing;
-        format!("{name}, {width} x {height} pixels, antialiasing {antialiasing}\n{}", self.precision_line())
+        format!("{name}, {width} x {height} pixels, antialiasing {antialiasing}\n{}", self.arithmetic_line())
     }
 
-    /// The precision and its reason.
-    pub fn precision_line(&self) -> String {
-        format!("precision: {}, {}", self.precision, self.reason)
+    /// Formulas, precision and its reason.
+    pub fn arithmetic_line(&self) -> String {
+        let Arithmetic { formulas, precision } = self.arithmetic;
+        format!("arithmetic: {formulas} formulas in {precision}; {}", self.reason)
     }
 }

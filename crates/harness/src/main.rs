@@ -2,7 +2,7 @@
 //!
 //! The glue between the other crates, and the only place that prints: results to standard output,
 //! errors and progress to standard error. Exit status: 0 done and all checks held; 1 a check
-//! failed; 2 the request or its input was wrong.
+//! failed; 2 the request or its input was wrong, or the machine cannot meet it.
 
 mod commands;
 mod input;

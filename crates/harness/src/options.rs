@@ -10,6 +10,9 @@ use std::thread::available_parallelism;
 /// The most threads that may be asked for.
 const MAX_THREADS: usize = 1024;
 
+/// The most tiles a picture may be cut into: with what a tile takes, less than 1 GiB.
+const MAX_TILES: u64 = 1 << 24;
+
 /// What is rendered.
 #[derive(Args)]
 pub struct SceneOptions {
@@ -22,6 +25,9 @@ pub struct SceneOptions {
     /// Number type of the tracer
     #[arg(long, value_enum, default_value_t)]
     pub precision: PrecisionOption,
+    /// Formulas of the tracer
+    #[arg(long, value_enum, default_value_t)]
+    pub formulas: FormulasOption,
     /// Numbers computed side by side; this version computes them one by one
     #[arg(long, value_enum, default_value_t)]
     pub lanes: LanesOption,
@@ -37,6 +43,16 @@ pub enum PrecisionOption {
     F32,
     /// 53 binary digits
     F64,
+}
+
+/// The formulas of the tracer.
+#[derive(Clone, Copy, Default, ValueEnum)]
+pub enum FormulasOption {
+    /// The lab report's, its slips mended: for comparison
+    Textbook,
+    /// Those that keep their digits
+    #[default]
+    Robust,
 }
 
 /// How many numbers an instruction computes.
@@ -55,7 +71,25 @@ pub enum LanesOption {
 pub struct TileOption {
     /// Side of a tile in pixels, for the strategies that deal in tiles
     #[arg(long, value_name = "N", default_value = "32")]
-    pub tile: NonZeroU32,
+    tile: NonZeroU32,
+}
+
+impl TileOption {
+    /// The side of a tile in a picture of this size.
+    pub fn of(&self, width: u32, height: u32) -> Result<NonZeroU32, String> {
+        checked_tile(self.tile, width, height)
+    }
+}
+
+/// A side of a tile that does not cut a picture into more tiles than memory is for.
+pub fn checked_tile(tile: NonZeroU32, width: u32, height: u32) -> Result<NonZeroU32, String> {
+    let tiles = u64::from(width.div_ceil(tile.get())) * u64::from(height.div_ceil(tile.get()));
+    if tiles <= MAX_TILES {
+        return Ok(tile);
+    }
+    Err(format!(
+        "--tile {tile} cuts {width} x {height} pixels into {tiles} tiles: at most {MAX_TILES}, use larger ones"
+    ))
 }
 
 /// A strategy by its name, for clap.
@@ -70,6 +104,17 @@ pub fn parse_strategy(name: &str) -> Result<&'static dyn Strategy, String> {
 pub fn parse_threads(text: &str) -> Result<NonZeroUsize, String> {
     let threads = text.parse().ok().filter(|threads| (1..=MAX_THREADS).contains(threads));
     threads.and_then(NonZeroUsize::new).ok_or_else(|| format!("expected an integer in 1..={MAX_THREADS}"))
+}
+
+/// Each value once, in the order given.
+pub fn distinct<T: Clone, K: PartialEq>(values: &[T], key: impl Fn(&T) -> K) -> Vec<T> {
+    let mut distinct: Vec<T> = Vec::new();
+    for value in values {
+        if !distinct.iter().any(|known| key(known) == key(value)) {
+            distinct.push(value.clone());
+        }
+    }
+    distinct
 }
 
 /// The number of threads that the machine and this process's quota allow.

@@ -1,37 +1,51 @@
 //! Files that appear whole or not at all.
 
 use std::fs;
-use std::io::Write;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use tempfile::Builder;
+use tempfile::{Builder, NamedTempFile};
 
-/// Whether [`write`] has a chance, asked before hours of rendering.
-pub fn check_writable(path: &Path) -> Result<(), String> {
-    let cannot = |reason: &str| Err(format!("{}: cannot be written: {reason}", path.display()));
-    match fs::metadata(path) {
-        Ok(metadata) if metadata.is_dir() => return cannot("it is a folder"),
-        // To replace a device or a pipe by a file is not what anyone means.
-        Ok(metadata) if !metadata.is_file() => return cannot("it is not a regular file"),
-        _ => {}
+/// A file that will be there once it is whole. Until then an old one of this name stays, and if it
+/// never is, nothing is left behind.
+pub struct PendingFile {
+    path: PathBuf,
+    file: NamedTempFile,
+}
+
+impl PendingFile {
+    /// Finds out whether `path` can be written, before hours of computing.
+    pub fn create(path: &Path) -> Result<Self, String> {
+        match fs::metadata(path) {
+            Ok(metadata) if metadata.is_dir() => return cannot(path, "it is a folder"),
+            // To replace a device or a pipe by a file is not what anyone means.
+            Ok(metadata) if !metadata.is_file() => return cannot(path, "it is not a regular file"),
+            _ => {}
+        }
+        // A link stays a link: what it points to is replaced.
+        let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        let folder = folder_of(&target);
+        if !folder.is_dir() {
+            return cannot(path, &format!("there is no folder {}", folder.display()));
+        }
+        match new_file(&folder) {
+            Ok(file) => Ok(Self { path: target, file }),
+            Err(error) => cannot(path, &format!("{} in its folder", error.kind())),
+        }
     }
-    let folder = folder_of(path);
-    if folder.is_dir() { Ok(()) } else { cannot(&format!("there is no folder {}", folder.display())) }
+
+    /// Gives the file its contents and its name.
+    pub fn finish(mut self, contents: &[u8]) -> Result<(), String> {
+        let written = self.file.write_all(contents).and_then(|()| self.file.as_file().sync_all());
+        let kept = written.and_then(|()| self.file.persist(&self.path).map_err(|e| e.error));
+        kept.map(drop).or_else(|error| cannot(&self.path, &error.to_string()))
+    }
 }
 
-/// Writes `bytes` beside `path` and renames the result: nobody ever sees half a file, and an old
-/// file stays until the new one is whole.
-pub fn write(path: &Path, bytes: &[u8]) -> Result<(), String> {
-    check_writable(path)?;
-    let cannot = |e: std::io::Error| format!("{}: cannot be written: {e}", path.display());
-    // A link stays a link: what it points to is replaced.
-    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-    let mut file = new_file(&folder_of(&target)).map_err(cannot)?;
-    file.write_all(bytes).and_then(|()| file.as_file().sync_all()).map_err(cannot)?;
-    file.persist(&target).map_err(|e| cannot(e.error))?;
-    Ok(())
+fn cannot<T>(path: &Path, reason: &str) -> Result<T, String> {
+    Err(format!("{}: cannot be written: {reason}", path.display()))
 }
 
-fn new_file(folder: &Path) -> std::io::Result<tempfile::NamedTempFile> {
+fn new_file(folder: &Path) -> io::Result<NamedTempFile> {
     let mut builder = Builder::new();
     builder.prefix(".rayweave-");
     // A temporary file is private by default; this one becomes an ordinary file.

@@ -26,6 +26,11 @@ impl<'a, W: Work + ?Sized> Watched<'a, W> {
         Self { work, bar }
     }
 
+    /// Whether anybody watches: standard error is a terminal.
+    pub fn is_seen(&self) -> bool {
+        !self.bar.is_hidden()
+    }
+
     /// Takes the bar away.
     pub fn finish(&self) {
         self.bar.finish_and_clear();

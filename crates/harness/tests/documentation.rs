@@ -77,6 +77,15 @@ fn the_documents_commands_work() {
 }
 
 #[test]
+fn nothing_is_left_to_fill_in() {
+    for document in DOCUMENTS {
+        let text = fs::read_to_string(repository().join(document)).expect("the document");
+        let left = text.lines().find(|line| line.starts_with('@') || line.contains("TODO"));
+        assert_eq!(left, None, "{document}");
+    }
+}
+
+#[test]
 fn the_documents_links_lead_somewhere() {
     for document in DOCUMENTS {
         let text = fs::read_to_string(repository().join(document)).expect("the document");

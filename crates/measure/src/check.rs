@@ -3,10 +3,11 @@
 //! Every strategy is prepared for every number of threads and size of tile, and the renderer so
 //! prepared renders every picture twice: it has to draw the same picture again, and to be the same
 //! after pictures of other sizes. Before each rendering the picture is poisoned, so that a pixel
-//! that nobody writes shows itself, and a [`Recorder`] around the work knows who computed what.
+//! that nobody writes shows itself, and a [`Recorder`] around the work knows who computed what. That
+//! as many threads compute as were asked for, a [`Rendezvous`] shows.
 
 use crate::attempt::attempt;
-use crate::computing_threads::computing_threads;
+use crate::computing_threads::Rendezvous;
 use crate::finding::{Difference, Fault, Finding, Picture};
 use crate::poison;
 use crate::recorder::{Record, Recorder};
@@ -121,10 +122,10 @@ impl<'a> Check<'a> {
         let mut run = Run { pairs: &pairs, verdict, done: 0, total, progress: &mut progress };
         for &strategy in self.strategies {
             for &threads in self.threads_of(strategy) {
-                run.count_threads(strategy, threads, self.timeout);
-                for &tile in self.tiles {
-                    run.render_all(strategy, Plan { threads, tile });
-                }
+                let plans = self.tiles.iter().map(|&tile| Plan { threads, tile });
+                // Up to the first wrong number: each of too few would wait for the timeout again.
+                let _ = plans.clone().all(|plan| run.threads_are_right(strategy, plan, self.timeout));
+                plans.for_each(|plan| run.render_all(strategy, plan));
             }
         }
         Ok(run.verdict)
@@ -161,13 +162,22 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    fn count_threads(&mut self, strategy: &dyn Strategy, threads: NonZeroUsize, timeout: Duration) {
-        let fault = match computing_threads(strategy, threads, timeout) {
-            Ok(found) if found == threads.get() => return,
-            Ok(found) => Fault::Threads { expected: threads.get(), found },
+    fn threads_are_right(&mut self, strategy: &dyn Strategy, plan: Plan, timeout: Duration) -> bool {
+        let rendezvous = Rendezvous::of(plan);
+        let fault = match rendezvous.computing_threads(strategy, timeout) {
+            Ok(found) if found == plan.threads.get() => return true,
+            Ok(found) => Fault::Threads { expected: plan.threads.get(), found },
             Err(error) => Fault::Failed(error.to_string()),
         };
-        self.found(strategy, threads, None, fault);
+        let picture = Picture {
+            scene: "rendezvous".to_owned(),
+            width: rendezvous.width,
+            height: rendezvous.height,
+            tile: rendezvous.plan.tile.get(),
+            repetition: 1,
+        };
+        self.found(strategy, plan.threads, Some(picture), fault);
+        false
     }
 
     fn render_all(&mut self, strategy: &dyn Strategy, plan: Plan) {
@@ -187,7 +197,7 @@ impl Run<'_> {
                     total: self.total,
                 });
                 self.verdict.compared += 1;
-                let faults = render_and_compare(&mut *renderer, &*case.work, expected);
+                let faults = render_and_compare(&mut *renderer, plan.threads, &*case.work, expected);
                 if faults.is_empty() {
                     continue;
                 }
@@ -221,7 +231,12 @@ impl Run<'_> {
 }
 
 /// Renders into a poisoned picture and says what is wrong with it, if anything.
-fn render_and_compare(renderer: &mut dyn Renderer, work: &dyn Work, expected: &Image) -> Vec<Fault> {
+fn render_and_compare(
+    renderer: &mut dyn Renderer,
+    threads: NonZeroUsize,
+    work: &dyn Work,
+    expected: &Image,
+) -> Vec<Fault> {
     let mut found = expected.clone();
     poison::fill(&mut found);
     let recorder = Recorder::new(work);
@@ -233,7 +248,17 @@ fn render_and_compare(renderer: &mut dyn Renderer, work: &dyn Work, expected: &I
         return vec![Fault::Failed(message)];
     }
     let record = recorder.finish();
-    difference(expected, &found, &record).into_iter().chain(not_once(&found, &record)).collect()
+    let faults = [
+        difference(expected, &found, &record),
+        not_once(&found, &record),
+        too_many_threads(threads.get(), record.threads()),
+    ];
+    faults.into_iter().flatten().collect()
+}
+
+/// Fewer than were asked for prove nothing: a thread may find all the work done.
+fn too_many_threads(expected: usize, found: usize) -> Option<Fault> {
+    (found > expected).then_some(Fault::Threads { expected, found })
 }
 
 fn difference(expected: &Image, found: &Image, record: &Record) -> Option<Fault> {

@@ -3,7 +3,8 @@
 //! Watching a rendering does not tell: a thread may be idle by the luck of scheduling alone, and on
 //! a machine with two cores 64 threads hardly ever meet. So the work is a rendezvous: whoever
 //! computes a tile waits until N distinct threads do. A strategy with N threads cannot help
-//! bringing all of them, and one with fewer gives itself away by letting the time run out.
+//! bringing all of them, and one with fewer gives itself away by letting the time run out. Who
+//! comes only then proves nothing: it may be a thread that was started when another had ended.
 
 use crate::attempt::attempt;
 use rayweave_core::image::ImageError;
@@ -21,6 +22,9 @@ pub const TIMEOUT: Duration = Duration::from_secs(10);
 /// How long the threads that have met stay together, so that one too many comes to light.
 const GRACE: Duration = Duration::from_millis(20);
 
+/// The most pixels that threads meet over, as long as there are two for each: 12 MiB.
+const MAX_PIXELS: u32 = 1 << 20;
+
 /// Why threads could not be counted.
 #[derive(Debug, Error)]
 pub enum CountError {
@@ -32,32 +36,52 @@ pub enum CountError {
     Image(#[from] ImageError),
 }
 
-/// The number of threads that compute when `strategy` is prepared for `threads` of them.
+/// What the threads of a plan meet over: a column of two tiles for each.
 ///
-/// Too few are reported after `timeout`, exactly; so are too many, unless the surplus thread is not
-/// scheduled at all while the others wait for it some 20 ms.
-///
-/// # Errors
-///
-/// The strategy failed, or there is no picture with enough tiles.
-pub fn computing_threads(
-    strategy: &dyn Strategy,
-    threads: NonZeroUsize,
-    timeout: Duration,
-) -> Result<usize, CountError> {
-    // Enough pixels, rows and columns that each thread gets some, whatever it is that a strategy
-    // deals out, and that something is left over for a surplus thread.
-    let side = u32::try_from(threads.get()).unwrap_or(u32::MAX).saturating_mul(4);
-    let mut image = Image::new(side, side)?;
-    let rendezvous = Rendezvous::new(threads.get(), timeout);
-    let plan = Plan { threads, tile: NonZeroU32::MIN };
-    attempt(|| strategy.prepare(plan)?.render(&rendezvous, &mut image)).map_err(CountError::Strategy)?;
-    Ok(rendezvous.threads())
+/// So each thread gets some, and something is left over for a surplus thread, whether a strategy
+/// deals out pixels, rows or tiles; a strategy that deals out columns would need another picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rendezvous {
+    /// What is prepared for: the plan, but with tiles of which there is a picture within bounds.
+    pub plan: Plan,
+    /// In pixels: a tile's, or less where that would be too many pixels.
+    pub width: u32,
+    /// In pixels.
+    pub height: u32,
+}
+
+impl Rendezvous {
+    /// For the threads of `plan`.
+    #[must_use]
+    pub fn of(plan: Plan) -> Self {
+        let tiles = u32::try_from(plan.threads.get()).unwrap_or(u32::MAX).saturating_mul(2);
+        let largest = NonZeroU32::new(MAX_PIXELS / tiles).unwrap_or(NonZeroU32::MIN);
+        let tile = plan.tile.min(largest);
+        let height = tile.get().saturating_mul(tiles);
+        let width = (MAX_PIXELS / height).clamp(1, tile.get());
+        Self { plan: Plan { tile, ..plan }, width, height }
+    }
+
+    /// The number of threads that compute when `strategy` is prepared for the plan.
+    ///
+    /// Too few are reported after `timeout`, exactly; too many as one too many at least, unless the
+    /// surplus thread is not scheduled at all while the others wait for it some 20 ms.
+    ///
+    /// # Errors
+    ///
+    /// The strategy failed, or there is no picture with enough tiles.
+    pub fn computing_threads(&self, strategy: &dyn Strategy, timeout: Duration) -> Result<usize, CountError> {
+        let mut image = Image::new(self.width, self.height)?;
+        let meeting = Meeting::new(self.plan.threads, timeout);
+        attempt(|| strategy.prepare(self.plan)?.render(&meeting, &mut image))
+            .map_err(CountError::Strategy)?;
+        Ok(meeting.threads())
+    }
 }
 
 /// A work that returns from its first tiles only when enough distinct threads compute one.
 #[derive(Debug)]
-struct Rendezvous {
+struct Meeting {
     threads: usize,
     timeout: Duration,
     state: Mutex<State>,
@@ -78,14 +102,16 @@ enum Phase {
     Gathering(Instant),
     /// All have met, and wait until then for one too many.
     Complete(Instant),
-    /// Nobody waits any more.
+    /// Nobody waits any more, for all have met; whoever still comes is one too many.
     Open,
+    /// Nobody waits any more, for too few have come in time; whoever still comes does not count.
+    GivenUp,
 }
 
-impl Rendezvous {
-    fn new(threads: usize, timeout: Duration) -> Self {
+impl Meeting {
+    fn new(threads: NonZeroUsize, timeout: Duration) -> Self {
         let state = Mutex::new(State { seen: HashSet::new(), phase: Phase::Empty });
-        Self { threads, timeout, state, changed: Condvar::new() }
+        Self { threads: threads.get(), timeout, state, changed: Condvar::new() }
     }
 
     fn threads(self) -> usize {
@@ -93,10 +119,12 @@ impl Rendezvous {
     }
 }
 
-impl Work for Rendezvous {
+impl Work for Meeting {
     fn render(&self, tile: &mut Tile<'_>) {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
-        state.seen.insert(thread::current().id());
+        if !matches!(state.phase, Phase::GivenUp) {
+            state.seen.insert(thread::current().id());
+        }
         if let Phase::Empty = state.phase {
             state.phase = Phase::Gathering(Instant::now() + self.timeout);
         }
@@ -109,7 +137,8 @@ impl Work for Rendezvous {
         while let Phase::Gathering(end) | Phase::Complete(end) = state.phase {
             let left = end.saturating_duration_since(Instant::now());
             if left.is_zero() {
-                state.phase = Phase::Open;
+                let met = matches!(state.phase, Phase::Complete(_));
+                state.phase = if met { Phase::Open } else { Phase::GivenUp };
                 self.changed.notify_all();
             } else {
                 let waited = self.changed.wait_timeout(state, left);
@@ -127,14 +156,21 @@ mod tests {
 
     /// What is counted when `present` threads compute and `asked` are waited for.
     fn count(present: usize, asked: usize, timeout: Duration) -> usize {
-        let rendezvous = Rendezvous::new(asked, timeout);
+        let meeting = meeting_of(asked, timeout);
         thread::scope(|scope| {
             for _ in 0..present {
-                scope
-                    .spawn(|| (0..10).for_each(|x| rendezvous.render(&mut Tile::pixel(x, 0, &mut [1.0; 3]))));
+                scope.spawn(|| compute(&meeting));
             }
         });
-        rendezvous.threads()
+        meeting.threads()
+    }
+
+    fn meeting_of(threads: usize, timeout: Duration) -> Meeting {
+        Meeting::new(NonZeroUsize::new(threads).expect("not 0"), timeout)
+    }
+
+    fn compute(meeting: &Meeting) {
+        (0..10).for_each(|x| meeting.render(&mut Tile::pixel(x, 0, &mut [1.0; 3])));
     }
 
     #[test]
@@ -145,6 +181,37 @@ mod tests {
         assert_eq!(count(4, 3, TIMEOUT), 4, "too many");
         for (present, asked) in [(1, 2), (3, 5)] {
             assert_eq!(count(present, asked, Duration::from_millis(50)), present, "too few");
+        }
+    }
+
+    /// Threads one after the other are one at a time, however many.
+    #[test]
+    fn who_comes_late_does_not_count_unless_all_were_there() {
+        let one_after_another = |threads: usize, asked| {
+            let meeting = meeting_of(asked, Duration::from_millis(20));
+            for _ in 0..threads {
+                thread::scope(|scope| drop(scope.spawn(|| compute(&meeting)).join()));
+            }
+            meeting.threads()
+        };
+        assert_eq!(one_after_another(2, 2), 1);
+        assert_eq!(one_after_another(3, 1), 3);
+    }
+
+    #[test]
+    fn two_tiles_for_each_thread_within_bounds() {
+        for threads in [1, 2, 64, 1024] {
+            for tile in [1, 8, 32, 1000, u32::MAX] {
+                let plan = Plan {
+                    threads: NonZeroUsize::new(threads).expect("not 0"),
+                    tile: NonZeroU32::new(tile).expect("not 0"),
+                };
+                let Rendezvous { plan: Plan { tile: side, .. }, width, height } = Rendezvous::of(plan);
+                let mut image = Image::new(width, height).expect("a picture");
+                assert_eq!(image.tiles(side).len(), 2 * threads, "{plan:?}");
+                assert!(width * height <= MAX_PIXELS, "{plan:?}: {width} x {height}");
+                assert!(side.get() == tile || tile >= 1000, "{plan:?}: {side}");
+            }
         }
     }
 }

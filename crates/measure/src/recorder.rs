@@ -85,11 +85,6 @@ impl Record {
         self.log.threads.len()
     }
 
-    /// Every tile in the order of completion.
-    pub fn computations(&self) -> impl Iterator<Item = Computation> {
-        self.log.computations.iter().map(|&(tile, thread)| self.computation(tile, thread))
-    }
-
     /// The tiles that contain pixel `(x, y)`, in the order of completion.
     #[must_use]
     pub fn of_pixel(&self, x: u32, y: u32) -> Vec<Computation> {
@@ -161,8 +156,9 @@ mod tests {
         let record = recorder.finish();
 
         assert_eq!(record.threads(), 2);
-        let order: Vec<_> = record.computations().map(|c| (c.tile.x, c.thread.index)).collect();
-        assert_eq!(order, [(0, 0), (1, 1), (2, 0)]);
+        let order: Vec<_> = record.of_pixel(1, 0).iter().map(|c| (c.tile.x, c.thread.index)).collect();
+        assert_eq!(order, [(0, 0), (1, 1)]);
+        assert_eq!(record.of_pixel(2, 1)[0].thread.index, 0);
         // The row at (2, 1) reaches beyond a picture of 3 x 2.
         assert_eq!(record.times_computed(3, 2), [1, 2, 1, 0, 0, 1]);
         let last = record.of_pixel(1, 0).pop().expect("computed");

@@ -1,12 +1,8 @@
 //! What a sample of times says: median, its uncertainty, and what threads made of it.
 
-use crate::random::SplitMix64;
+use std::f64::consts::LN_2;
 
-/// Resamples of a bootstrap: enough that another seed moves an end of the interval by less than
-/// the spacing of the sample.
-const RESAMPLES: usize = 2000;
-
-/// Share of the resamples outside a 95 % interval at each end.
+/// The most that a 95 % interval may miss at each end.
 const TAIL: f64 = 0.025;
 
 /// A median and the ends of its 95 % confidence interval, all in the unit of the sample.
@@ -34,25 +30,24 @@ pub fn median(sample: &[f64]) -> Option<f64> {
     median_in_place(&mut sample.to_vec())
 }
 
-/// The median of `sample` with its 95 % interval by the percentile bootstrap (Efron 1979), the same
-/// for the same seed; `None` when there is no sample.
+/// The median of `sample` with its 95 % interval, which the sign test gives: from the `k`-th value
+/// to the `k`-th last, for the largest `k` with a coverage of 95 % or more. `None` when there is no
+/// sample.
 ///
-/// It assumes nothing of the distribution but that the values of a sample are independent, and so
-/// wants ratios within a round, not times: what slows a whole round down cancels in the ratio.
+/// Of fewer than 6 values it is the smallest and the largest, though these cover less: 93.75 % of 5,
+/// and of `n` values 1 - 2 / 2^n.
+///
+/// The coverage is exact whatever the distribution, as long as the values of a sample are
+/// independent. So it wants ratios within a round, not times: what slows a whole round down cancels
+/// in the ratio.
+///
+/// Source: Conover, "Practical Nonparametric Statistics", 3rd edition, 1999, section 3.2.
 #[must_use]
-pub fn median_interval(sample: &[f64], seed: u64) -> Option<Interval> {
-    let middle = median(sample)?;
-    let mut random = SplitMix64::new(seed);
-    let mut resample = vec![0.0; sample.len()];
-    let mut medians: Vec<f64> = (0..RESAMPLES)
-        .filter_map(|_| {
-            resample.fill_with(|| sample[random.below(sample.len())]);
-            median_in_place(&mut resample)
-        })
-        .collect();
-    medians.sort_unstable_by(f64::total_cmp);
-    let tail = (TAIL * RESAMPLES as f64) as usize;
-    Some(Interval { median: middle, low: medians[tail], high: medians[RESAMPLES - 1 - tail] })
+pub fn median_interval(sample: &[f64]) -> Option<Interval> {
+    let mut sorted = sample.to_vec();
+    let median = median_in_place(&mut sorted)?;
+    let outside = outside(sorted.len());
+    Some(Interval { median, low: sorted[outside], high: sorted[sorted.len() - 1 - outside] })
 }
 
 /// How much of `threads` threads a speed-up uses: 1 is all of it.
@@ -69,6 +64,21 @@ pub fn efficiency(speedup: f64, threads: usize) -> f64 {
 pub fn karp_flatt(speedup: f64, threads: usize) -> Option<f64> {
     let inverse = 1.0 / threads as f64;
     (threads > 1).then(|| (1.0 / speedup - inverse) / (1.0 - inverse))
+}
+
+/// How many of `n` values in order lie outside of the median's interval at each end.
+///
+/// The median is below the value with `k` others below it when at most `k` of the `n` are below the
+/// median, which is a matter of tossing a coin `n` times.
+fn outside(n: usize) -> usize {
+    // As logarithms: 2^n has no `f64` from 1024 values on.
+    let (mut ln_ways, mut tail) = (0.0, 0.0);
+    let values = (0..n / 2).take_while(|&k| {
+        tail += f64::exp(ln_ways - n as f64 * LN_2);
+        ln_ways += f64::ln((n - k) as f64 / (k + 1) as f64);
+        tail <= TAIL
+    });
+    values.last().unwrap_or(0)
 }
 
 fn median_in_place(sample: &mut [f64]) -> Option<f64> {
@@ -90,40 +100,48 @@ mod tests {
         assert_eq!(median(&[]), None);
     }
 
-    /// The bootstrap's own distribution is known: the median of 11 draws from 1..=11 is at most k
-    /// when 6 or more draws are, a binomial tail.
-    #[test]
-    fn interval_ends_where_the_binomial_tails_do() {
-        let at_most = |k: f64| -> f64 {
-            let p = k / 11.0;
-            let choose = [462.0, 330.0, 165.0, 55.0, 11.0, 1.0];
-            (6..=11).zip(choose).map(|(n, ways)| ways * p.powi(n) * (1.0 - p).powi(11 - n)).sum()
-        };
-        // The 2.5 % point is at 3 and, mirrored, the 97.5 % point at 9: clear of both by over 0.01.
-        assert!(at_most(2.0) < 0.015 && at_most(3.0) > 0.035);
-
-        let sample: Vec<f64> = (1..=11).map(f64::from).collect();
-        for seed in 0..20 {
-            let interval = median_interval(&sample, seed).expect("a sample");
-            assert_eq!(interval, Interval { median: 6.0, low: 3.0, high: 9.0 }, "seed {seed}");
-        }
+    /// The coverage of the interval that leaves out `outside` of `n` values at each end, in integers.
+    fn coverage(n: u32, outside: u32) -> f64 {
+        let ways = |k: u32| (0..k).fold(1, |ways, i| ways * u128::from(n - i) / u128::from(i + 1));
+        1.0 - 2.0 * (0..=outside).map(ways).sum::<u128>() as f64 / (1u128 << n) as f64
     }
 
     #[test]
-    fn interval_follows_from_the_seed_alone() {
-        let mut random = SplitMix64::new(7);
-        let sample: Vec<f64> = (0..40).map(|_| random.next_u64() as f64).collect();
-        assert_eq!(median_interval(&sample, 3), median_interval(&sample, 3));
-        assert_ne!(median_interval(&sample, 3), median_interval(&sample, 4));
+    fn interval_is_the_tightest_of_95_percent() {
+        assert_eq!(coverage(11, 1), 1.0 - 2.0 * 12.0 / 2048.0);
+        for n in 6..=100 {
+            let outside = u32::try_from(outside(n as usize)).expect("a few");
+            assert!(coverage(n, outside) >= 0.95, "{n} values without {outside} at each end");
+            assert!(coverage(n, outside + 1) < 0.95, "{n} values without {outside} at each end");
+        }
+    }
+
+    /// The ranks that the tables of textbooks have.
+    #[test]
+    fn interval_ends_at_order_statistics() {
+        let ranks = [(1, 1, 1), (2, 1, 2), (5, 1, 5), (6, 1, 6), (8, 1, 8), (9, 2, 8), (11, 2, 10)];
+        for (n, low, high) in ranks.into_iter().chain([(12, 3, 10), (17, 5, 13), (20, 6, 15), (40, 14, 27)]) {
+            // From the largest to the smallest.
+            let sample: Vec<f64> = (1..=n).rev().map(f64::from).collect();
+            let median = f64::from(n + 1) / 2.0;
+            let expected = Interval { median, low: f64::from(low), high: f64::from(high) };
+            assert_eq!(median_interval(&sample), Some(expected), "{n} values");
+        }
+    }
+
+    /// 10,000 tosses: 1.96 standard deviations of 50 are 98.
+    #[test]
+    fn interval_of_many_values() {
+        assert_eq!(outside(10_000), 4901);
     }
 
     #[test]
     fn interval_of_equal_values_is_that_value() {
         let third = 1.0 / 3.0;
         let expected = Interval { median: third, low: third, high: third };
-        assert_eq!(median_interval(&[third; 4], 1), Some(expected));
-        assert_eq!(median_interval(&[third], 1), Some(expected));
-        assert_eq!(median_interval(&[], 1), None);
+        assert_eq!(median_interval(&[third; 4]), Some(expected));
+        assert_eq!(median_interval(&[third]), Some(expected));
+        assert_eq!(median_interval(&[]), None);
     }
 
     /// 5.67 s on one thread, 1.60 s on five.

@@ -1,5 +1,6 @@
 //! What a check found, as text and as JSON.
 
+use crate::json;
 use crate::machine::Facts;
 use rayweave_measure::{Fault, Finding, Machine, Verdict};
 use serde::Serialize;
@@ -45,7 +46,7 @@ pub fn json(verdict: &Verdict, machine: &Machine) -> String {
         machine: Facts::new(machine),
         findings: verdict.findings.iter().map(Item::new).collect(),
     };
-    crate::compare::to_json(&object)
+    json::text(&object)
 }
 
 #[derive(Serialize)]

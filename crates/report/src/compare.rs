@@ -6,8 +6,6 @@ mod table;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use json::to_json;
-
 use rayweave_core::ThreadsStart;
 use rayweave_measure::{Comparison, Machine, Row};
 

@@ -5,4 +5,5 @@
 
 pub mod check;
 pub mod compare;
+mod json;
 pub mod machine;

@@ -6,8 +6,8 @@ use std::path::Path;
 
 use crate::{SceneFile, SceneFileError, parse};
 
-/// The largest scene file that is read: 256 MiB.
-pub const MAX_BYTES: u64 = 256 << 20;
+/// The largest scene file that is read: 32 MiB, which is some 400,000 spheres.
+pub const MAX_BYTES: u64 = 32 << 20;
 
 /// Reads a scene file. Its errors call the file by `path`.
 ///

@@ -147,7 +147,8 @@ fn optional_keys_have_the_defaults_of_the_model() {
     assert_eq!(bare.scene.camera, camera());
     assert_eq!(bare.scene.render, RenderSettings::default());
     assert!(bare.scene.lights.is_empty() && bare.scene.materials.is_empty());
-    assert_eq!(bare.scene.primitive_count(), 0);
+    assert!(bare.scene.planes.is_empty() && bare.scene.spheres.is_empty());
+    assert!(bare.scene.triangles.is_empty() && bare.scene.cylinders.is_empty());
 }
 
 #[test]

@@ -90,12 +90,22 @@ pub(crate) trait Family: Debug + Send + Sync + 'static {
     /// What becomes of the hit `near` a surface, given the surface's own point next to it.
     fn settle<L: Lane>(near: Vector<L>, on_surface: SurfacePoint<L>) -> SurfacePoint<L>;
 
-    /// The ray from `start` to a light, which is `toward` away in the direction `to_light`, and the
-    /// `t` that a surface has to be nearer than to hide the light.
-    fn shadow_ray<L: Lane>(
-        start: Vector<L>,
-        toward: Vector<L>,
-        to_light: Vector<L>,
-        distance: L,
-    ) -> (Ray<L>, L);
+    /// The ray along a path to a light, and the `t` that a surface has to be nearer than to hide it.
+    fn shadow_ray<L: Lane>(path: &LightPath<L>) -> (Ray<L>, L);
+}
+
+/// The way from a surface to a light.
+pub(crate) struct LightPath<L> {
+    /// Where it begins, off the surface.
+    pub(crate) start: Vector<L>,
+    /// From there to the light.
+    pub(crate) toward: Vector<L>,
+    /// The same at unit length.
+    pub(crate) to_light: Vector<L>,
+    /// The length.
+    pub(crate) distance: L,
+    /// One over it.
+    pub(crate) inverse_distance: L,
+    /// The sum of the magnitudes of the coordinates of both ends.
+    pub(crate) reach: L,
 }

@@ -1,6 +1,6 @@
 //! The formulas that keep their digits; those of the shapes stand beside the shapes.
 
-use super::Family;
+use super::{Family, LightPath};
 use crate::lane::{Lane, Mask, Scalar};
 use crate::ray::{Ray, miss};
 use crate::shapes::SurfacePoint;
@@ -64,17 +64,12 @@ impl Family for Robust {
     }
 
     /// `t` counts in the way to the light, and ends a little before 1: a surface that passes through
-    /// the light does not hide it. 256 roundings cover the error of `t` in a surface that the ray
-    /// meets at an angle above about a hundredth.
+    /// the light does not hide it. Where such a surface lies is known to about 16 roundings of the
+    /// coordinates of both ends, as in the clearance of a hit.
     #[inline(always)]
-    fn shadow_ray<L: Lane>(
-        start: Vector<L>,
-        toward: Vector<L>,
-        _to_light: Vector<L>,
-        _distance: L,
-    ) -> (Ray<L>, L) {
-        let before_light = L::literal(1.0 - 256.0 * L::Scalar::ROUNDOFF);
-        (Ray { origin: start, direction: toward }, before_light)
+    fn shadow_ray<L: Lane>(path: &LightPath<L>) -> (Ray<L>, L) {
+        let uncertain = path.reach * path.inverse_distance * L::literal(16.0 * L::Scalar::ROUNDOFF);
+        (Ray { origin: path.start, direction: path.toward }, L::literal(1.0) - uncertain)
     }
 }
 

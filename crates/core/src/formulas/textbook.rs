@@ -1,6 +1,6 @@
 //! The formulas of the lab report, its slips mended: to see what they cost, and what they cost not.
 
-use super::Family;
+use super::{Family, LightPath};
 use crate::lane::{Lane, Mask};
 use crate::ray::{Ray, miss};
 use crate::shapes::SurfacePoint;
@@ -98,13 +98,8 @@ impl Family for Textbook {
     }
 
     #[inline(always)]
-    fn shadow_ray<L: Lane>(
-        start: Vector<L>,
-        _toward: Vector<L>,
-        to_light: Vector<L>,
-        distance: L,
-    ) -> (Ray<L>, L) {
-        (Ray { origin: start, direction: to_light }, distance - L::literal(OFFSET))
+    fn shadow_ray<L: Lane>(path: &LightPath<L>) -> (Ray<L>, L) {
+        (Ray { origin: path.start, direction: path.to_light }, path.distance - L::literal(OFFSET))
     }
 }
 

@@ -23,6 +23,8 @@ pub(crate) const AXES: usize = 3;
 #[derive(Clone, Copy)]
 pub(crate) struct Aim<L, const AXIS: usize> {
     shear: [L; 2],
+    /// The direction's component along the axis.
+    along: L,
 }
 
 /// For each axis, the mask of rays that are longest along it; every ray belongs to exactly one.
@@ -48,14 +50,15 @@ impl<L: Lane, const AXIS: usize> Aim<L, AXIS> {
     #[inline(always)]
     pub(crate) fn new(ray: &Ray<L>) -> Self {
         let [x, y, z] = turned::<L, AXIS>(ray.direction);
-        Self { shear: [x / z, y / z] }
+        Self { shear: [x / z, y / z], along: z }
     }
 
-    /// Where `v` lies aside of the ray. The same rounded point for every triangle that shares `v`.
+    /// Where `v` lies aside of the ray, and how far along the axis. The same rounded point for every
+    /// triangle that shares `v`.
     #[inline(always)]
-    fn project(&self, ray: &Ray<L>, v: Vector<L>) -> [L; 2] {
+    fn project(&self, ray: &Ray<L>, v: Vector<L>) -> [L; 3] {
         let [x, y, z] = turned::<L, AXIS>(v - ray.origin);
-        [x - self.shear[0] * z, y - self.shear[1] * z]
+        [x - self.shear[0] * z, y - self.shear[1] * z, z]
     }
 }
 
@@ -74,7 +77,8 @@ impl<S: Scalar> Triangle<S> {
 
     /// The edge test of Woop, Benthin and Wald (Watertight Ray/Triangle Intersection, JCGT 2013):
     /// signs of 2 x 2 determinants of projected corners, which are the same from both sides of a
-    /// shared edge. `t` is that of the plane, differences first.
+    /// shared edge. `t` is that of the plane, differences first; where the ray grazes the plane that
+    /// is mostly noise, so it is kept between those of the corners.
     #[inline(always)]
     pub(crate) fn intersect<L: Lane<Scalar = S>, const AXIS: usize>(
         &self,
@@ -83,7 +87,7 @@ impl<S: Scalar> Triangle<S> {
     ) -> L {
         let zero = L::literal(0.0);
         let [a, b, c] = self.vertices.map(|v| aim.project(ray, Vector::splat(v)));
-        let edge = |[px, py]: [L; 2], [qx, qy]: [L; 2]| sign_of_difference(px, qy, py, qx);
+        let edge = |[px, py, _]: [L; 3], [qx, qy, _]: [L; 3]| sign_of_difference(px, qy, py, qx);
         let (u, v, w) = (edge(b, c), edge(c, a), edge(a, b));
         let front = zero.le(u) & zero.le(v) & zero.le(w);
         let back = u.le(zero) & v.le(zero) & w.le(zero);
@@ -93,8 +97,13 @@ impl<S: Scalar> Triangle<S> {
             return miss();
         }
         let normal = Vector::splat(self.normal);
-        let t = normal.dot(Vector::splat(self.vertices[0]) - ray.origin) / normal.dot(ray.direction);
-        L::select(inside & zero.lt(t), t, miss())
+        let slope = normal.dot(ray.direction);
+        let t = normal.dot(Vector::splat(self.vertices[0]) - ray.origin) / slope;
+        let (lowest, highest) = (a[2].min(b[2]).min(c[2]), a[2].max(b[2]).max(c[2]));
+        let (from, to) = (lowest / aim.along, highest / aim.along);
+        let t = t.max(from.min(to)).min(from.max(to));
+        // A ray parallel to the plane, or a triangle without area, misses.
+        L::select(inside & zero.lt(slope.abs()) & zero.lt(t), t, miss())
     }
 
     #[inline(always)]

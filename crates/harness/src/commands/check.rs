@@ -1,8 +1,9 @@
 //! `rayweave check`: proof that all strategies draw the same picture.
 
 use crate::input::Input;
-use crate::options::{SceneOptions, all_threads, parse_strategy, parse_threads};
-use crate::{Outcome, output, print, progress};
+use crate::options::{SceneOptions, all_threads, checked_tile, distinct, parse_strategy, parse_threads};
+use crate::output::PendingFile;
+use crate::{Outcome, print, progress};
 use clap::Args;
 use rayweave_core::Strategy;
 use rayweave_measure::check::{Case, Check, Verdict};
@@ -38,9 +39,13 @@ pub struct Arguments {
 const AWKWARD_SIZES: [(u32, u32); 5] = [(1, 1), (1, 50), (50, 1), (7, 3), (97, 61)];
 
 pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
-    arguments.json.as_deref().map_or(Ok(()), output::check_writable)?;
+    let json = arguments.json.as_deref().map(PendingFile::create).transpose()?;
     let input = Input::load(arguments.scene.as_deref(), &arguments.options)?;
-    let strategies = if arguments.strategy.is_empty() { STRATEGIES } else { &arguments.strategy };
+    // Before anything is checked: whether the full picture can be made at all.
+    input.picture()?;
+    arguments.tile.iter().try_for_each(|&tile| checked_tile(tile, input.width, input.height).map(drop))?;
+    let strategies =
+        distinct(if arguments.strategy.is_empty() { STRATEGIES } else { &arguments.strategy }, |s| s.name());
 
     let mut verdict = Verdict { compared: 0, findings: Vec::new() };
     let mut check = |sizes: &[(u32, u32)], threads: &[usize], tiles: &[u32]| -> Result<(), String> {
@@ -49,7 +54,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
         let tiles = or_default(&arguments.tile, tiles.iter().copied().filter_map(NonZeroU32::new));
         let part = run_with_bar(&Check {
             reference: rayweave_registry::reference(),
-            strategies,
+            strategies: &strategies,
             cases: &cases,
             threads: &threads,
             tiles: &tiles,
@@ -69,9 +74,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let machine = Machine::here();
     let facts = report::machine::text(&machine);
     print(&format!("{}\n{facts}\n\n{}\n", input.describe(), report::check::text(&verdict).trim_end()))?;
-    if let Some(path) = &arguments.json {
-        output::write(path, report::check::json(&verdict, &machine).as_bytes())?;
-    }
+    json.map_or(Ok(()), |file| file.finish(report::check::json(&verdict, &machine).as_bytes()))?;
     Ok(if verdict.holds() { Outcome::Held } else { Outcome::Failed })
 }
 
@@ -90,6 +93,6 @@ fn case(input: &Input, (width, height): (u32, u32)) -> Result<Case<'static>, Str
     Ok(Case { name: input.name.clone(), width, height, work: input.work(width, height)? })
 }
 
-fn or_default<T: Copy>(given: &[T], default: impl Iterator<Item = T>) -> Vec<T> {
-    if given.is_empty() { default.collect() } else { given.to_vec() }
+fn or_default<T: Copy + PartialEq>(given: &[T], default: impl Iterator<Item = T>) -> Vec<T> {
+    if given.is_empty() { default.collect() } else { distinct(given, |value| *value) }
 }

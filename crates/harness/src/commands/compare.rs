@@ -1,8 +1,9 @@
 //! `rayweave compare`, and `rayweave` alone: the table.
 
 use crate::input::Input;
-use crate::options::{SceneOptions, TileOption, all_threads, parse_strategy, parse_threads};
-use crate::{Outcome, output, print, progress};
+use crate::options::{SceneOptions, TileOption, all_threads, distinct, parse_strategy, parse_threads};
+use crate::output::PendingFile;
+use crate::{Outcome, print, progress};
 use clap::Args;
 use rayweave_core::Strategy;
 use rayweave_measure::compare::{Comparison, Entry, Protocol};
@@ -10,7 +11,7 @@ use rayweave_measure::machine::Machine;
 use rayweave_measure::stopwatch::Stopwatch;
 use rayweave_registry::STRATEGIES;
 use rayweave_report::compare::{Report, Subject};
-use std::num::NonZeroUsize;
+use std::num::{NonZeroU32, NonZeroUsize};
 use std::path::{Path, PathBuf};
 
 #[derive(Args)]
@@ -42,39 +43,39 @@ pub struct Options {
 }
 
 pub fn run(scene: Option<&Path>, options: &Options) -> Result<Outcome, String> {
-    for path in options.json.iter().chain(&options.csv) {
-        output::check_writable(path)?;
+    if options.json.is_some() && options.json == options.csv {
+        return Err("--json and --csv name the same file".to_owned());
     }
+    let json = options.json.as_deref().map(PendingFile::create).transpose()?;
+    let csv = options.csv.as_deref().map(PendingFile::create).transpose()?;
     let input = Input::load(scene, &options.scene_options)?;
-    let comparison = measure(&input, options)?;
+    let tile = options.tile.of(input.width, input.height)?;
+    let comparison = measure(&input, tile, options)?;
     let subject = Subject {
         scene: input.name.clone(),
         width: input.width,
         height: input.height,
-        tile: options.tile.tile.get(),
+        tile: tile.get(),
         antialiasing: input.scene.render.antialiasing,
-        precision: input.precision.to_string(),
+        precision: input.arithmetic.precision.to_string(),
     };
     let report = Report { subject: &subject, comparison: &comparison, machine: &Machine::here() };
-    print(&format!("{}\n{}\n", report.table(), input.precision_line()))?;
-    if let Some(path) = &options.json {
-        output::write(path, report.json().as_bytes())?;
-    }
-    if let Some(path) = &options.csv {
-        output::write(path, report.csv().as_bytes())?;
-    }
+    print(&format!("{}\n{}\n", report.table(), input.arithmetic_line()))?;
+    json.map_or(Ok(()), |file| file.finish(report.json().as_bytes()))?;
+    csv.map_or(Ok(()), |file| file.finish(report.csv().as_bytes()))?;
     Ok(if comparison.holds() { Outcome::Held } else { Outcome::Failed })
 }
 
 /// Steps of the progress bar.
 const STEPS: f64 = 1000.0;
 
-fn measure(input: &Input, options: &Options) -> Result<Comparison, String> {
+fn measure(input: &Input, tile: NonZeroU32, options: &Options) -> Result<Comparison, String> {
     let work = input.work(input.width, input.height)?;
-    let mut stopwatch =
-        Stopwatch::new(&*work, input.width, input.height, options.tile.tile).map_err(|e| e.to_string())?;
-    let strategies = if options.strategy.is_empty() { STRATEGIES } else { &options.strategy };
-    let threads = if options.threads.is_empty() { vec![all_threads()] } else { options.threads.clone() };
+    let mut stopwatch = Stopwatch::new(&*work, input.width, input.height, tile).map_err(|e| e.to_string())?;
+    let strategies =
+        distinct(if options.strategy.is_empty() { STRATEGIES } else { &options.strategy }, |s| s.name());
+    let threads =
+        if options.threads.is_empty() { vec![all_threads()] } else { distinct(&options.threads, |n| *n) };
     let pairs = strategies.iter().flat_map(|&strategy| threads.iter().map(move |&n| (strategy, n)));
     let entries: Vec<Entry<'_>> = pairs.map(|(strategy, threads)| Entry { strategy, threads }).collect();
 

@@ -2,11 +2,12 @@
 
 use crate::input::Input;
 use crate::options::{SceneOptions, TileOption, all_threads, parse_strategy, parse_threads};
+use crate::output::PendingFile;
 use crate::picture::Format;
 use crate::progress::Watched;
-use crate::{Outcome, output, print};
+use crate::{Outcome, print};
 use clap::Args;
-use rayweave_core::{Plan, Strategy, ThreadsStart};
+use rayweave_core::{Plan, Strategy, ThreadsStart, Work};
 use rayweave_measure::machine::Machine;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -34,25 +35,27 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let path = arguments.output.clone().unwrap_or_else(|| default_output(arguments.scene.as_deref()));
     let format = Format::of(&path)?;
-    output::check_writable(&path)?;
+    let file = PendingFile::create(&path)?;
     let input = Input::load(arguments.scene.as_deref(), &arguments.options)?;
 
     let strategy = arguments.strategy.unwrap_or_else(rayweave_registry::recommended);
     let threads = arguments.threads.unwrap_or_else(all_threads);
-    let plan = Plan { threads, tile: arguments.tile.tile };
+    let plan = Plan { threads, tile: arguments.tile.of(input.width, input.height)? };
     // What has no threads of its own computes on one, whatever was asked for.
     let computing = if strategy.threads_start() == ThreadsStart::Never { NonZeroUsize::MIN } else { threads };
     let mut picture = input.picture()?;
     let work = input.work(input.width, input.height)?;
     let mut renderer = strategy.prepare(plan).map_err(|e| e.to_string())?;
     let watched = Watched::new(&*work, picture.pixels().len() as u64);
+    // Watched only where somebody sees it: the bar takes its share of the time.
+    let work: &dyn Work = if watched.is_seen() { &watched } else { &*work };
     let begin = Instant::now();
-    let result = renderer.render(&watched, &mut picture);
+    let result = renderer.render(work, &mut picture);
     let seconds = begin.elapsed().as_secs_f64();
     watched.finish();
     result.map_err(|e| e.to_string())?;
 
-    output::write(&path, &format.encode(&picture)?)?;
+    file.finish(&format.encode(&picture)?)?;
     print(&format!(
         "{}\n{}, threads: {computing}, {seconds:.3} s, digest {}\n{}\nwritten to {}\n",
         input.describe(),
@@ -66,6 +69,6 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
 
 /// In the working folder, named after the scene.
 fn default_output(scene: Option<&Path>) -> PathBuf {
-    let stem = scene.and_then(Path::file_stem).unwrap_or("report".as_ref());
-    Path::new(stem).with_extension("png")
+    let name = scene.and_then(Path::file_name).unwrap_or("report.toml".as_ref());
+    Path::new(name).with_extension("png")
 }

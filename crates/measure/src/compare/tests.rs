@@ -182,10 +182,29 @@ fn an_error_ends_its_row_and_no_other() {
 }
 
 #[test]
+fn without_a_right_reference_there_are_no_figures() {
+    let failures: [fn() -> Result<Rendering, String>; 2] = [|| wrong(1), || Err("no memory".to_owned())];
+    for failure in failures {
+        // The picture, the warm-up of the reference and its control, two rounds of both, then the third.
+        let mut executor =
+            fake(|name, call| if name == "reference" && call >= 7 { failure() } else { right(4) });
+        let comparison = run(protocol(6, 6, u64::MAX), &mut executor);
+        assert!(!comparison.rows[0].holds() && comparison.rows[2].holds() && !comparison.holds());
+        assert!(comparison.rows.iter().all(|row| row.figures.is_none() && row.samples.len() >= 2));
+    }
+}
+
+#[test]
 fn a_failing_reference_is_an_error() {
     let mut executor = fake(|_, _| Err("broken".to_owned()));
     let result = protocol(1, 1, 0).run(&REFERENCE, &[], &mut executor, |_| {});
     assert_eq!(result.expect_err("no picture").to_string(), "the reference failed: broken");
+}
+
+#[test]
+fn the_least_number_of_rounds_is_enough_for_an_interval() {
+    let Protocol { min_rounds, max_rounds, budget, .. } = Protocol::default();
+    assert_eq!((min_rounds, max_rounds, budget), (6, 40, Duration::from_secs(30)));
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The comparison for other programs.
 
 use super::{Report, threads_start};
+use crate::json;
 use crate::machine::Facts;
 use rayweave_measure::compare::{Role, Row};
 use serde::Serialize;
@@ -51,7 +52,7 @@ struct Speedup {
 
 pub(super) fn text(report: &Report<'_>) -> String {
     let Report { subject, comparison, machine } = report;
-    to_json(&Object {
+    json::text(&Object {
         schema: SCHEMA,
         scene: &subject.scene,
         width: subject.width,
@@ -86,10 +87,4 @@ fn result(row: &Row) -> Result<'_> {
         prepare_samples_ns: row.samples.iter().map(|sample| sample.prepare_ns).collect(),
         error: row.error.as_deref(),
     }
-}
-
-/// Indented JSON of one of our own objects.
-pub(crate) fn to_json(object: &impl Serialize) -> String {
-    // It fails only for maps whose keys are not text, and there are no maps.
-    serde_json::to_string_pretty(object).expect("plain structures are JSON")
 }

@@ -134,10 +134,11 @@ fn notes(comparison: &Comparison) -> Vec<String> {
     notes.extend(comparison.control().map(|control| {
         let Interval { median, low, high } = control;
         let verdict = if control.contains(1.0) {
-            let noise = (high - 1.0).max(1.0 - low) * 100.0;
-            format!("1 is in it, as it should be; differences up to {noise:.1} % are noise.")
+            "as it should be, 1 is in it.\n\
+             That much is order and drift, of one thread; to tell rows apart compare their own intervals."
         } else {
-            "1 is not in it, as for one in twenty quiet runs: measure again.".to_owned()
+            "1 is not in it: measure again.\n\
+             Chance alone keeps it out of at most one quiet run in twenty."
         };
         format!("control: {reference} over itself is {median:.3} [{low:.3}, {high:.3}]; {verdict}")
     }));

@@ -1,0 +1,66 @@
+//! The digests of pictures, as they are to stay on every machine and in every build.
+//!
+//! They may change only when a picture's meaning changes: the model, a formula, an order of
+//! operations. A faster way to the same picture, another strategy, compiler or machine is no such
+//! change. To print new ones, run `cargo test -p rayweave-tests --test golden`: the failure shows
+//! the whole table as it has to stand here.
+
+use rayweave_core::{Precision, Scene};
+use rayweave_tests::{picture, random_scene::random_scene, scenes};
+
+const WIDTH: u32 = 100;
+const HEIGHT: u32 = 75;
+
+/// The first 16 digits of each digest: in `f32` and in `f64`, without antialiasing and with 2.
+type Golden = (&'static str, [[u64; 2]; 2]);
+
+#[rustfmt::skip]
+const GOLDEN: [Golden; 6] = [
+    ("report", [[0x7eb96ffbddd33cda, 0x8439fce95f3cd976], [0xbb5e595df8eb25ab, 0x27a91ed89c290d3a]]),
+    ("room", [[0xf9e2d59de8f7ebb3, 0x65a07c4fad3282e3], [0x92b0ab31c5e977f1, 0xc087e509b8869bfc]]),
+    ("imbalance", [[0xe1b4b2e8be7988b7, 0x4004901f4fc3ed84], [0xf0a63fab5b359bf4, 0x1088d7e845897801]]),
+    ("random 1", [[0x6f6b9b4234501569, 0x131b51466e2da946], [0x16ad69731809da0d, 0x3998d874893c010a]]),
+    ("random 4", [[0xd9f829ba0913f742, 0x6834cdb37523fff1], [0xa9ee3994424a419a, 0x455c78df7a12842c]]),
+    ("random 7", [[0xc3e4ba18fbea4b34, 0x4e23a610357ffdf7], [0x9b87e957c9ff5582, 0xb88e1cc91b04dcfe]]),
+];
+
+fn scene(name: &str) -> Scene {
+    match name.strip_prefix("random ") {
+        Some(seed) => random_scene(seed.parse().expect("a number")),
+        None => scenes::named(name),
+    }
+}
+
+fn digests(scene: &Scene) -> [[u64; 2]; 2] {
+    [Precision::F32, Precision::F64].map(|precision| {
+        [0, 2].map(|antialiasing| {
+            let mut scene = scene.clone();
+            scene.render.antialiasing = antialiasing;
+            let digest = picture::of_scene(&scene, WIDTH, HEIGHT, precision).digest();
+            u64::from_str_radix(&digest.short(), 16).expect("16 hexadecimal digits")
+        })
+    })
+}
+
+/// Catches any change of a bit: a formula rearranged, a sum in another order, a multiply-add, a
+/// `libm` of the system's, an optimisation that rounds differently.
+#[test]
+fn pictures_stay_what_they_are() {
+    let found = GOLDEN.map(|(name, _)| (name, digests(&scene(name))));
+    let table: String = found
+        .iter()
+        .map(|(name, [[a, b], [c, d]])| {
+            format!("    ({name:?}, [[{a:#018x}, {b:#018x}], [{c:#018x}, {d:#018x}]]),\n")
+        })
+        .collect();
+    assert!(found == GOLDEN, "the pictures are now\n{table}");
+}
+
+/// Catches a table that cannot fail: a digest that is the same for two pictures, because the scene
+/// was not used, or the precision, or the antialiasing.
+#[test]
+fn no_two_pictures_are_the_same() {
+    let mut all: Vec<_> = GOLDEN.iter().flat_map(|(_, digests)| digests.as_flattened()).collect();
+    all.sort_unstable();
+    assert!(all.windows(2).all(|pair| pair[0] != pair[1]));
+}

@@ -1,0 +1,168 @@
+//! The same bits from every strategy, number of threads, size of tile and size of picture; and from
+//! every way of cutting a picture into tiles, which is what lets strategies differ at all.
+//!
+//! `broken_strategies` shows that `check` catches what is wrong; this is the proof for the real
+//! tracer, against pictures that no strategy had a hand in.
+
+use rayweave_core::{Area, Image, Plan, Precision, Rgb, Scene, Tile, Work, tracer};
+use rayweave_registry::STRATEGIES;
+use rayweave_tests::picture::pixel_by_pixel;
+use rayweave_tests::{random_scene::random_scene, scenes};
+use std::num::{NonZeroU32, NonZeroUsize};
+
+const THREADS: [usize; 6] = [1, 2, 3, 5, 8, 64];
+const TILES: [u32; 4] = [1, 7, 32, 1000];
+const SIZES: [(u32, u32); 5] = [(1, 1), (1, 500), (500, 1), (7, 3), (97, 61)];
+/// What no scene here is: a pixel that is left out shows it.
+const POISON: Rgb = [f32::NAN; 3];
+
+/// The scene of this name, at an antialiasing low enough to render it hundreds of times.
+fn scene(name: &str) -> Scene {
+    let mut scene = scenes::named(name);
+    scene.render.antialiasing = scene.render.antialiasing.min(1);
+    scene
+}
+
+/// Catches a strategy that leaves out, swaps or tears pixels, or keeps something of the picture
+/// before: one renderer draws all sizes, one after the other.
+fn strategies_agree(name: &str, precision: Precision) {
+    let scene = scene(name);
+    let pictures = SIZES.map(|(width, height)| {
+        let work = tracer(&scene, width, height, precision).expect("a sound scene");
+        let right = pixel_by_pixel(&*work, width, height);
+        (work, right)
+    });
+    for strategy in STRATEGIES {
+        for (threads, tile) in THREADS.iter().flat_map(|threads| TILES.map(|tile| (*threads, tile))) {
+            let context = format!("{name}: {}, {threads} threads, tiles of {tile}", strategy.name());
+            let plan = Plan {
+                threads: NonZeroUsize::new(threads).expect("not 0"),
+                tile: NonZeroU32::new(tile).expect("not 0"),
+            };
+            let mut renderer = strategy.prepare(plan).expect(&context);
+            for (work, right) in &pictures {
+                let mut found = Image::filled(right.width(), right.height(), POISON).expect("a picture");
+                renderer.render(&**work, &mut found).expect(&context);
+                assert_same(&found, right, &context);
+            }
+        }
+    }
+}
+
+/// Catches a strategy that races or mixes up tiles while the pixels cost about the same.
+#[test]
+fn strategies_agree_on_the_report() {
+    strategies_agree("report", Precision::F32);
+}
+
+/// The same in wide numbers.
+#[test]
+fn strategies_agree_on_the_room() {
+    strategies_agree("room", Precision::F64);
+}
+
+/// The same where one corner costs almost everything: threads end far apart, tiles finish out of
+/// order.
+#[test]
+fn strategies_agree_on_the_imbalance() {
+    strategies_agree("imbalance", Precision::F32);
+}
+
+/// Catches work that shares something between the pixels of a tile and gets another rounding from
+/// it: at the tile's edge, in its first row, or for one size of tile.
+#[test]
+fn a_pixel_is_the_same_in_every_tile() {
+    let mut scenes: Vec<_> = scenes::NAMES.map(scene).into();
+    // Denser lattices than above, odd and even, and none.
+    scenes.extend([3, 7, 11].map(random_scene));
+    for (antialiasing, scene) in [0, 2, 3].into_iter().zip(&mut scenes[3..]) {
+        scene.render.antialiasing = antialiasing;
+    }
+    for (number, scene) in scenes.iter().enumerate() {
+        for precision in [Precision::F32, Precision::F64] {
+            for (width, height) in [(1, 1), (1, 50), (50, 1), (7, 3), (48, 31)] {
+                let work = tracer(scene, width, height, precision).expect("a sound scene");
+                let context = format!("scene {number} in {precision}, {width}x{height}");
+                tilings_agree(&*work, width, height, &context);
+            }
+        }
+    }
+}
+
+fn tilings_agree(work: &dyn Work, width: u32, height: u32, context: &str) {
+    let right = pixel_by_pixel(work, width, height);
+    let poisoned = || Image::filled(width, height, POISON).expect("a picture");
+
+    let mut by_row = poisoned();
+    for (y, row) in by_row.pixels_mut().chunks_mut(width as usize).enumerate().rev() {
+        work.render(&mut Tile::row(0, y as u32, row));
+    }
+    assert_same(&by_row, &right, &format!("{context}, by row"));
+
+    let mut by_half_row = poisoned();
+    for (y, row) in (0..).zip(by_half_row.pixels_mut().chunks_mut(width as usize)) {
+        let (left, rest) = row.split_at_mut(width as usize / 2);
+        work.render(&mut Tile::row(width / 2, y, rest));
+        work.render(&mut Tile::row(0, y, left));
+    }
+    assert_same(&by_half_row, &right, &format!("{context}, by half a row"));
+
+    // From one pixel to the whole picture.
+    for side in [1, 2, 3, 5, 8, 16, 1000] {
+        let mut tiled = poisoned();
+        let tiles = tiled.tiles(NonZeroU32::new(side).expect("not 0"));
+        tiles.into_iter().rev().for_each(|mut tile| work.render(&mut tile));
+        assert_same(&tiled, &right, &format!("{context}, tiles of {side}"));
+    }
+}
+
+/// Catches work with a memory: a cache that a second rendering finds changed.
+#[test]
+fn a_pixel_is_the_same_every_time() {
+    for name in scenes::NAMES {
+        let work = tracer(&scene(name), 20, 15, Precision::F32).expect("a sound scene");
+        let first = pixel_by_pixel(&*work, 20, 15);
+        assert_same(&pixel_by_pixel(&*work, 20, 15), &first, name);
+    }
+}
+
+/// Catches tiles that overlap, leave something out or are named after another place: then two
+/// strategies could agree on a wrong picture.
+#[test]
+fn tiles_are_where_they_say() {
+    struct Place;
+    impl Work for Place {
+        fn render(&self, tile: &mut Tile<'_>) {
+            let Area { x: left, y: top, width, height } = tile.area();
+            let mut rows = 0;
+            for (y, row) in tile.rows() {
+                assert_eq!((y, row.len() as u32), (top + rows, width));
+                (left..).zip(row).for_each(|(x, color)| *color = [x as f32, y as f32, color[2] + 1.0]);
+                rows += 1;
+            }
+            assert_eq!(rows, height);
+        }
+    }
+    for (width, height) in SIZES {
+        for tile in TILES {
+            let mut picture = Image::new(width, height).expect("a picture");
+            let tiles = picture.tiles(NonZeroU32::new(tile).expect("not 0"));
+            tiles.into_iter().for_each(|mut tile| Place.render(&mut tile));
+            for (index, color) in picture.pixels().iter().enumerate() {
+                let (x, y) = picture.position(index);
+                assert_eq!(*color, [x as f32, y as f32, 1.0], "{width}x{height}, tiles of {tile}");
+            }
+        }
+    }
+}
+
+#[track_caller]
+fn assert_same(found: &Image, right: &Image, context: &str) {
+    let bits = |color: &Rgb| color.map(f32::to_bits);
+    let pairs = found.pixels().iter().zip(right.pixels()).enumerate();
+    let different: Vec<_> = pairs.filter(|(_, (found, right))| bits(found) != bits(right)).collect();
+    if let Some((index, (found, expected))) = different.first() {
+        let (count, position) = (different.len(), right.position(*index));
+        panic!("{context}: {count} pixels differ, the first at {position:?}: {found:?}, not {expected:?}");
+    }
+}
