@@ -1,0 +1,100 @@
+//! Meshes whose triangles share edges and vertices bit for bit.
+
+use glam::DVec3;
+
+use super::Setup;
+use super::draw::{Draw, ray, rounded, single};
+use crate::cases::{Primitive, Ray};
+
+/// Where a mesh is put: as drawn, at another scale, or far from the origin.
+struct Placement {
+    scale: f64,
+    offset: DVec3,
+}
+
+impl Placement {
+    fn draw(draw: &mut Draw, index: usize) -> Self {
+        let mut placement = Self { scale: 1.0, offset: DVec3::ZERO };
+        match index % 3 {
+            0 => {}
+            1 => placement.scale = draw.magnitude(1e-3, 1e4),
+            _ => placement.offset = draw.unit() * draw.magnitude(1e3, 1e5),
+        }
+        placement
+    }
+
+    /// The point in its place, as f32 has it.
+    fn put(&self, point: DVec3) -> DVec3 {
+        rounded(point * self.scale + self.offset)
+    }
+
+    fn note(&self) -> String {
+        format!("scale {:.1e} offset {:.1e}", self.scale, self.offset.length())
+    }
+}
+
+/// The triangles, each beginning with any vertex and turning either way.
+fn setup(draw: &mut Draw, mut triangles: Vec<[DVec3; 3]>, ray: Ray, note: String) -> Setup {
+    for triangle in &mut triangles {
+        triangle.rotate_left(draw.integer(0, 2) as usize);
+        if draw.chance(0.5) {
+            triangle.swap(1, 2);
+        }
+    }
+    let triangles = triangles.into_iter().map(|triangle| triangle.map(single)).collect();
+    Setup { primitive: Primitive::Mesh { triangles }, ray, note }
+}
+
+pub(super) fn edge(draw: &mut Draw, index: usize) -> Setup {
+    let placement = Placement::draw(draw, index);
+    let (start, along) = (draw.within(1.5), draw.unit() * draw.range(0.5, 4.0));
+    let side = draw.across(along);
+    let middle = start + along * draw.range(0.0, 1.0);
+    let wings = [1.0, -1.0]
+        .map(|way| middle + (side * way + draw.within(0.5)) * draw.range(0.3, 3.0))
+        .map(|wing| placement.put(wing));
+    let (a, b) = (placement.put(start), placement.put(start + along));
+    let target = a + (b - a) * draw.range(0.02, 0.98);
+    let origin = target + draw.unit() * draw.range(1.0, 9.0) * placement.scale;
+    let ray = draw.ray_to(origin, target);
+    setup(draw, wings.map(|wing| [a, b, wing]).to_vec(), ray, placement.note())
+}
+
+pub(super) fn vertex(draw: &mut Draw, index: usize) -> Setup {
+    let placement = Placement::draw(draw, index);
+    let sides = draw.integer(3, 8) as usize;
+    let axis = draw.unit();
+    let right = draw.across(axis);
+    let ahead = axis.cross(right);
+    let hub = placement.put(draw.within(0.5));
+    let rim: Vec<DVec3> = (0..sides)
+        .map(|side| {
+            let angle = (side as f64 + draw.range(-0.3, 0.3)) * std::f64::consts::TAU / sides as f64;
+            let spoke = right * libm::cos(angle) + ahead * libm::sin(angle);
+            placement.put((spoke + axis * draw.range(-0.3, 0.3)) * draw.range(0.5, 2.0))
+        })
+        .collect();
+    let triangles = (0..sides).map(|side| [hub, rim[side], rim[(side + 1) % sides]]).collect();
+    let way = axis * draw.sign() + draw.within(0.5);
+    let origin = hub + way * draw.range(3.0, 10.0) * placement.scale;
+    let ray = draw.ray_to(origin, hub);
+    setup(draw, triangles, ray, format!("fan of {sides}, {}", placement.note()))
+}
+
+pub(super) fn closed(draw: &mut Draw, index: usize) -> Setup {
+    let placement = Placement::draw(draw, index);
+    let mut tip = |axis: DVec3| placement.put(axis * draw.range(1.0, 4.0) + draw.within(0.4));
+    let [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| [tip(axis), tip(-axis)]);
+    let octants = (0..8).map(|octant| [x[octant & 1], y[octant >> 1 & 1], z[octant >> 2]]);
+    let triangles: Vec<[DVec3; 3]> = octants.collect();
+    let [from, to, _] = triangles[index / 3 % 8];
+    let along = if draw.chance(0.5) { 0.0 } else { draw.range(0.0, 1.0) };
+    let origin = placement.put(draw.within(0.1));
+    let direction = from + (to - from) * along - origin;
+    let ray = match draw.integer(0, 2) {
+        0 => ray(origin, direction),
+        1 => ray(origin, direction.normalize()),
+        _ => ray(origin, direction * draw.magnitude(1e-7, 1e7)),
+    };
+    setup(draw, triangles, ray, format!("octahedron, {}", placement.note()))
+}

@@ -1,0 +1,39 @@
+//! How right is a ray / primitive kernel: hard cases with exact answers, and the score of a kernel's
+//! answers. Prints nothing.
+//!
+//! * [`cases`]: the case format, JSON lines read and written;
+//! * [`oracle`]: the exact answer to a case, by rational arithmetic;
+//! * [`families`]: seeded generators of 36 families of hard cases, with their answers;
+//! * [`outcomes`]: what a kernel answered, one JSON line a case;
+//! * [`mod@score`]: verdicts, errors in ulps and leaks a family, and [`goals`] for them.
+//!
+//! What is right:
+//!
+//! * a ray is `origin + t direction`, the direction of any length, `t` in units of it;
+//! * a hit needs `t > 0`, and the smallest such `t` counts; a ray that starts on a surface does not
+//!   hit it there;
+//! * a plane and a triangle have two sides; a ray in their plane misses them; a triangle's edges and
+//!   vertices belong to it, and a triangle without area is never hit;
+//! * a sphere is touched by its tangents;
+//! * a cylinder is a wall without caps around an axis parallel to y, both rims included; a ray
+//!   parallel to the axis misses it;
+//! * a number that is not finite, a direction or a normal of zero, a radius of 0 or less, a cylinder
+//!   upside down or askew is a miss.
+
+pub mod cases;
+pub mod decimal;
+pub mod families;
+pub mod goals;
+mod json_lines;
+pub mod oracle;
+pub mod outcomes;
+pub mod score;
+
+pub use cases::{Case, Expect, Primitive, Ray};
+pub use decimal::Decimal;
+pub use families::{FAMILIES, Family, generate};
+pub use goals::Tier;
+pub use json_lines::ReadError;
+pub use oracle::{Answer, answer};
+pub use outcomes::Outcome;
+pub use score::{FamilyScore, score};

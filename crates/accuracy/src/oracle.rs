@@ -1,0 +1,163 @@
+//! The exact answer to a case.
+//!
+//! Every input is an f32, hence a fraction, so the true answer is a mathematical fact. All verdicts
+//! (hit or miss, which root, inside which edge) are signs of fractions or of `p + s sqrt(d)` with
+//! fractions `p`, `s` and `d`, and are decided by rational arithmetic alone. The numbers of the
+//! answer are such expressions too; only to be written down are their roots taken, to 512 bits.
+//!
+//! How hard a case is for a kernel in f32 is said by three more numbers. Every kernel begins with the
+//! differences of positions (from origin to centre, to vertex ...), so the inputs `x_i` that count
+//! are these differences, the direction and the radius.
+//!
+//! * `cond`, the relative condition number of `t`: `sum_i |x_i dt/dx_i| / t`. A backward stable
+//!   kernel errs by a small multiple of `cond` ulps (Higham, "Accuracy and Stability of Numerical
+//!   Algorithms", 2nd ed., section 1.6).
+//! * `margin`: a verdict changes where some `g(x) = 0`; the distance from there, to first order, is
+//!   `|g| / sum_i |x_i dg/dx_i|`, and is given in ulps of 2^-23. A hit is as far from a miss as the
+//!   nearest of its boundaries; a miss with several reasons is as far from a hit as the best of them.
+//! * `decidable`: the margin is 4 or more. It is infinite where f32 arithmetic computes a `g` of 0
+//!   without rounding, and where a triangle has no area: neither leaves a kernel an excuse. A hit of
+//!   a mesh is always decidable: of triangles that share an edge, rounding may choose either, but one.
+
+mod cylinder;
+mod exact;
+mod margin;
+mod plane;
+mod quadric;
+mod sphere;
+mod triangle;
+
+use crate::cases::{Expect, Primitive, Ray};
+
+use exact::{Surd, Vector};
+
+/// From which margin on a good f32 kernel must be right, in ulps.
+pub const DECIDABLE_MARGIN: f64 = 4.0;
+/// What stands for infinity in [`Answer::cond`] and [`Answer::margin`], as JSON has none.
+pub const INFINITE: f64 = 9.9e99;
+
+/// The exact answer to a case, and how hard it is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Answer {
+    /// The answer.
+    pub expect: Expect,
+    /// The relative condition number of `t`, to four digits, at most [`INFINITE`]; 0 on a miss.
+    pub cond: f64,
+    /// Distance to the nearest other verdict in f32 ulps, to four digits, at most [`INFINITE`].
+    pub margin: f64,
+    /// Whether a good f32 kernel must get the verdict right.
+    pub decidable: bool,
+    /// Why it is a miss; empty on a hit.
+    pub reason: &'static str,
+}
+
+/// What was found out about one ray and one primitive.
+struct Trace {
+    hit: Option<Hit>,
+    margin: f64,
+    reason: &'static str,
+}
+
+/// Where a ray hits.
+struct Hit {
+    t: Surd,
+    cond: f64,
+    normal: [Surd; 3],
+}
+
+impl Trace {
+    fn hit(t: Surd, cond: f64, normal: [Surd; 3], margin: f64) -> Self {
+        Self { hit: Some(Hit { t, cond, normal }), margin, reason: "" }
+    }
+
+    fn miss(reason: &'static str, margin: f64) -> Self {
+        Self { hit: None, margin, reason }
+    }
+}
+
+/// The exact answer to a ray against a primitive. Defined for every input, finite or not: what is
+/// right in the odd cases is said at the head of this crate.
+#[must_use]
+pub fn answer(primitive: &Primitive, ray: &Ray) -> Answer {
+    let mesh = matches!(primitive, Primitive::Mesh { .. });
+    let (trace, expect) = match trace_finite(primitive, ray) {
+        Some((trace, expect)) => (trace, expect),
+        None => (Trace::miss("non-finite input", f64::INFINITY), Expect::Miss),
+    };
+    Answer {
+        decidable: trace.margin >= DECIDABLE_MARGIN || (mesh && expect.is_hit()),
+        expect,
+        cond: four_digits(trace.hit.map_or(0.0, |hit| hit.cond)),
+        margin: four_digits(trace.margin),
+        reason: trace.reason,
+    }
+}
+
+/// `None` where a number is not finite.
+fn trace_finite(primitive: &Primitive, ray: &Ray) -> Option<(Trace, Expect)> {
+    let (origin, direction) = (exact::vector(ray.origin)?, exact::vector(ray.direction)?);
+    let trace = if exact::is_zero(&direction) {
+        Trace::miss("zero direction", f64::INFINITY)
+    } else {
+        trace_primitive(primitive, &origin, &direction)?
+    };
+    let expect = match (&trace.hit, primitive) {
+        (None, _) => Expect::Miss,
+        (Some(hit), Primitive::Mesh { .. }) => Expect::MeshHit { t: hit.t.decimal() },
+        (Some(hit), _) => Expect::Hit {
+            t: hit.t.decimal(),
+            point: Box::new(std::array::from_fn(|i| hit.t.times(&direction[i]).plus(&origin[i]).decimal())),
+            normal: Box::new(hit.normal.each_ref().map(Surd::decimal)),
+        },
+    };
+    Some((trace, expect))
+}
+
+fn trace_primitive(primitive: &Primitive, origin: &Vector, direction: &Vector) -> Option<Trace> {
+    Some(match primitive {
+        Primitive::Plane { point, normal } => {
+            plane::trace(&exact::vector(*point)?, &exact::vector(*normal)?, origin, direction)
+        }
+        Primitive::Sphere { center, radius } => {
+            sphere::trace(&exact::vector(*center)?, &exact::number(*radius)?, origin, direction)
+        }
+        Primitive::Triangle { a, b, c } => {
+            let vertices = [exact::vector(*a)?, exact::vector(*b)?, exact::vector(*c)?];
+            triangle::trace(&vertices, origin, direction)
+        }
+        Primitive::Cylinder { bottom, top, radius } => {
+            let axis = [exact::vector(*bottom)?, exact::vector(*top)?];
+            cylinder::trace(&axis, &exact::number(*radius)?, origin, direction)
+        }
+        Primitive::Mesh { triangles } => trace_mesh(triangles, origin, direction),
+    })
+}
+
+/// The nearest of the triangles that are hit. One with a number that is not finite is none.
+fn trace_mesh(triangles: &[[[f32; 3]; 3]], origin: &Vector, direction: &Vector) -> Trace {
+    let mut nearest = Trace::miss("no triangle", f64::INFINITY);
+    for &[a, b, c] in triangles {
+        let triangle = Primitive::Triangle { a, b, c };
+        let Some(trace) = trace_primitive(&triangle, origin, direction) else { continue };
+        match (&nearest.hit, &trace.hit) {
+            (None, None) => nearest.margin = nearest.margin.min(trace.margin),
+            (None, Some(_)) => nearest = trace,
+            (Some(old), Some(new)) if new.t.is_less_rational(&old.t) => nearest = trace,
+            (Some(_), _) => {}
+        }
+    }
+    nearest
+}
+
+/// Four significant digits are enough to judge by, and short to write.
+fn four_digits(value: f64) -> f64 {
+    let value = value.min(INFINITE);
+    // What was written as a number is one.
+    format!("{value:.3e}").parse().unwrap_or(value)
+}
+
+/// `n / |n|`.
+fn unit(n: &Vector) -> [Surd; 3] {
+    let length_squared = exact::dot(n, n);
+    n.each_ref().map(|component| Surd::root(component / &length_squared, length_squared.clone()))
+}
