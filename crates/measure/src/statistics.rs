@@ -41,7 +41,7 @@ pub fn median(sample: &[f64]) -> Option<f64> {
 /// independent. So it wants ratios within a round, not times: what slows a whole round down cancels
 /// in the ratio.
 ///
-/// Source: Conover, "Practical Nonparametric Statistics", 3rd edition, 1999, section 3.2.
+/// Source: Hollander and Wolfe, "Nonparametric Statistical Methods", on the interval of the sign test.
 #[must_use]
 pub fn median_interval(sample: &[f64]) -> Option<Interval> {
     let mut sorted = sample.to_vec();
