@@ -4,6 +4,7 @@
 //! * [`cases`]: the case format, JSON lines read and written;
 //! * [`oracle`]: the exact answer to a case, by rational arithmetic;
 //! * [`families`]: seeded generators of 36 families of hard cases, with their answers;
+//! * [`kernel`]: what the tracer's own answers;
 //! * [`outcomes`]: what a kernel answered, one JSON line a case;
 //! * [`mod@score`]: verdicts, errors in ulps and leaks a family, and [`goals`] for them.
 //!
@@ -25,6 +26,7 @@ pub mod decimal;
 pub mod families;
 pub mod goals;
 mod json_lines;
+pub mod kernel;
 pub mod oracle;
 pub mod outcomes;
 pub mod score;

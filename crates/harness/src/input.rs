@@ -1,9 +1,9 @@
 //! From the options to a scene that is ready to be rendered.
 
-use crate::options::{FormulasOption, PrecisionOption, SceneOptions};
+use crate::options::{PrecisionOption, SceneOptions};
 use rayweave_core::image::ImageError;
 use rayweave_core::precision::Demand;
-use rayweave_core::{Arithmetic, Formulas, Image, Precision, Scene, Work, tracer};
+use rayweave_core::{Arithmetic, Image, Precision, Scene, Work, tracer};
 use rayweave_scene_file as scene_file;
 use std::path::Path;
 
@@ -37,11 +37,8 @@ impl Input {
             PrecisionOption::F32 => (Precision::F32, "as asked for".to_owned()),
             PrecisionOption::F64 => (Precision::F64, "as asked for".to_owned()),
         };
-        let formulas = match options.formulas {
-            FormulasOption::Textbook => Formulas::Textbook,
-            FormulasOption::Robust => Formulas::Robust,
-        };
-        Ok(Self { name, scene, width, height, arithmetic: Arithmetic { formulas, precision }, reason })
+        let arithmetic = Arithmetic { formulas: options.formulas.into(), precision };
+        Ok(Self { name, scene, width, height, arithmetic, reason })
     }
 
     /// The work of rendering the scene at this size.

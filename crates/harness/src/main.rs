@@ -12,7 +12,7 @@ mod picture;
 mod progress;
 
 use clap::{Parser, Subcommand};
-use commands::{check, compare, render, strategies};
+use commands::{check, compare, intersect, render, strategies};
 use std::io::{self, Write};
 use std::process::ExitCode;
 
@@ -37,6 +37,8 @@ enum Command {
     Check(check::Arguments),
     /// Time the strategies side by side and print the table (the default)
     Compare(compare::Arguments),
+    /// Send hard cases through the kernel that renders, results as JSON lines
+    Intersect(intersect::Arguments),
 }
 
 /// Whether the checks that a command makes held.
@@ -53,6 +55,7 @@ fn main() -> ExitCode {
         Some(Command::Render(arguments)) => render::run(&arguments),
         Some(Command::Check(arguments)) => check::run(&arguments),
         Some(Command::Compare(arguments)) => compare::run(arguments.scene.as_deref(), &arguments.options),
+        Some(Command::Intersect(arguments)) => intersect::run(&arguments),
         None => compare::run(None, &cli.compare),
     };
     match result {

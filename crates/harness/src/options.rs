@@ -1,8 +1,8 @@
 //! The options that several commands share, and how their values are read.
 
 use clap::{Args, ValueEnum};
-use rayweave_core::Strategy;
 use rayweave_core::scene::MAX_ANTIALIASING;
+use rayweave_core::{Formulas, Strategy};
 use rayweave_registry::STRATEGIES;
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::thread::available_parallelism;
@@ -72,6 +72,15 @@ pub struct TileOption {
     /// Side of a tile in pixels, for the strategies that deal in tiles
     #[arg(long, value_name = "N", default_value = "32")]
     tile: NonZeroU32,
+}
+
+impl From<FormulasOption> for Formulas {
+    fn from(option: FormulasOption) -> Self {
+        match option {
+            FormulasOption::Textbook => Self::Textbook,
+            FormulasOption::Robust => Self::Robust,
+        }
+    }
 }
 
 impl TileOption {

@@ -2,5 +2,6 @@
 
 pub mod check;
 pub mod compare;
+pub mod intersect;
 pub mod render;
 pub mod strategies;

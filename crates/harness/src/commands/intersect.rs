@@ -1,0 +1,67 @@
+//! `rayweave intersect`: hard cases through the kernel that renders.
+
+use crate::options::FormulasOption;
+use crate::output::PendingFile;
+use crate::{Outcome, print};
+use clap::{Args, ValueEnum};
+use rayweave_accuracy::{cases, kernel, outcomes, score};
+use rayweave_core::{Arithmetic, Precision};
+use std::fs::File;
+use std::io::{self, BufReader, Write};
+use std::path::PathBuf;
+
+#[derive(Args)]
+pub struct Arguments {
+    /// Cases, one JSON object a line
+    cases: PathBuf,
+    /// Number type of the kernel
+    #[arg(long, value_enum, default_value_t = KernelPrecision::F32)]
+    precision: KernelPrecision,
+    /// Formulas of the kernel
+    #[arg(long, value_enum, default_value_t)]
+    formulas: FormulasOption,
+    /// Write the results there and the table to standard output [default: the results to standard
+    /// output, the table to standard error]
+    #[arg(long, value_name = "OUT")]
+    json: Option<PathBuf>,
+}
+
+/// A single ray has no scene that could choose.
+#[derive(Clone, Copy, ValueEnum)]
+enum KernelPrecision {
+    /// 24 binary digits
+    F32,
+    /// 53 binary digits
+    F64,
+}
+
+pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
+    let out = arguments.json.as_deref().map(PendingFile::create).transpose()?;
+    let name = arguments.cases.display();
+    let file = File::open(&arguments.cases).map_err(|e| format!("{name}: cannot be read: {e}"))?;
+    let cases = cases::read(BufReader::new(file)).map_err(|e| format!("{name}: {e}"))?;
+    let precision = match arguments.precision {
+        KernelPrecision::F32 => Precision::F32,
+        KernelPrecision::F64 => Precision::F64,
+    };
+    let arithmetic = Arithmetic { formulas: arguments.formulas.into(), precision };
+
+    let found: Vec<_> = cases.iter().map(|case| kernel::outcome(case, arithmetic)).collect();
+    let mut lines = Vec::new();
+    outcomes::write(&mut lines, &found).map_err(|e| format!("the results cannot be written: {e}"))?;
+    let scores = score(&cases, &found);
+    let table = rayweave_report::accuracy::table(&scores);
+    match out {
+        Some(file) => {
+            file.finish(&lines)?;
+            print(&table)?;
+        }
+        None => {
+            print(&String::from_utf8_lossy(&lines))?;
+            // Only people miss the table when standard error is closed.
+            let _ = write!(io::stderr(), "{table}");
+        }
+    }
+    let wrong = scores.iter().any(|score| score.wrong > 0 || score.leaks > 0 || score.non_finite > 0);
+    Ok(if wrong { Outcome::Failed } else { Outcome::Held })
+}
