@@ -16,12 +16,12 @@ type Golden = (&'static str, [[u64; 2]; 2]);
 
 #[rustfmt::skip]
 const GOLDEN: [Golden; 6] = [
-    ("report", [[0x7eb96ffbddd33cda, 0x8439fce95f3cd976], [0xbb5e595df8eb25ab, 0x27a91ed89c290d3a]]),
-    ("room", [[0xf9e2d59de8f7ebb3, 0x65a07c4fad3282e3], [0x92b0ab31c5e977f1, 0xc087e509b8869bfc]]),
-    ("imbalance", [[0xe1b4b2e8be7988b7, 0x4004901f4fc3ed84], [0xf0a63fab5b359bf4, 0x1088d7e845897801]]),
-    ("random 1", [[0x6f6b9b4234501569, 0x131b51466e2da946], [0x16ad69731809da0d, 0x3998d874893c010a]]),
-    ("random 4", [[0xd9f829ba0913f742, 0x6834cdb37523fff1], [0xa9ee3994424a419a, 0x455c78df7a12842c]]),
-    ("random 7", [[0xc3e4ba18fbea4b34, 0x4e23a610357ffdf7], [0x9b87e957c9ff5582, 0xb88e1cc91b04dcfe]]),
+    ("report", [[0xd3cfd859c014ee4c, 0x50894736b80e5b5b], [0xbb5e595df8eb25ab, 0x27a91ed89c290d3a]]),
+    ("room", [[0x28e69534d23fb1aa, 0xfb27f7e2fbe38ae5], [0x92b0ab31c5e977f1, 0xc087e509b8869bfc]]),
+    ("imbalance", [[0x371d40cfb9469d6b, 0xe2e14c1f68602389], [0xff778ef8c69ccc27, 0x58bd46daf8ccb3e1]]),
+    ("random 1", [[0xcc2656be588b0563, 0x0e80ee385b241dff], [0x16ad69731809da0d, 0x3998d874893c010a]]),
+    ("random 4", [[0x9db0cd079e0269f3, 0xec6fbdd65cf253e8], [0xa9ee3994424a419a, 0x455c78df7a12842c]]),
+    ("random 7", [[0xd576509782b1dcc6, 0x8be7fb729339457b], [0x9b87e957c9ff5582, 0xb88e1cc91b04dcfe]]),
 ];
 
 fn scene(name: &str) -> Scene {

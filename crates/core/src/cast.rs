@@ -5,7 +5,7 @@ use crate::lane::Scalar;
 use crate::precision::Precision;
 use crate::primitives::Primitives;
 use crate::ray::Ray;
-use crate::scene::{Scene, SceneError};
+use crate::scene::{Scene, SceneError, near_one};
 use crate::trace::World;
 use crate::vector::Vector;
 use glam::DVec3;
@@ -51,8 +51,7 @@ fn nearest_hit_in<S: Scalar, F: Family>(scene: &Scene, origin: DVec3, direction:
     // of a very long or short direction would over- or underflow. The renderer's own are unit, or
     // reach from a point to a light.
     let (_, exponent) = libm::frexp(direction.abs().max_element());
-    let scaled = direction.to_array().map(|component| libm::scalbn(component, -exponent));
-    let ray = Ray::<S> { origin: Vector::rounded(origin), direction: Vector::rounded(scaled.into()) };
+    let ray = Ray::<S> { origin: Vector::rounded(origin), direction: Vector::rounded(near_one(direction)) };
     let primitives = Primitives::new(scene);
     let hit = primitives.nearest::<S, F>(&ray);
     hit.exists().then(|| {

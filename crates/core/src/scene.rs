@@ -353,6 +353,12 @@ fn color(key: &'static str, c: DVec3) -> Result<(), Fault> {
     expect(key, shares, "three numbers in 0..=1", c)
 }
 
+/// `v` scaled so that its largest component is near 1, by a power of two: exactly.
+pub(crate) fn near_one(v: DVec3) -> DVec3 {
+    let (_, exponent) = libm::frexp(v.abs().max_element());
+    v.to_array().map(|component| libm::scalbn(component, -exponent)).into()
+}
+
 /// `v` at unit length, for any finite `v` but zero: scaled first, so that no square overflows.
 pub(crate) fn unit(v: DVec3) -> DVec3 {
     (v / v.abs().max_element()).normalize()

@@ -45,6 +45,9 @@ fn setup(draw: &mut Draw, mut triangles: Vec<[DVec3; 3]>, ray: Ray, note: String
     Setup { primitive: Primitive::Mesh { triangles }, ray, note }
 }
 
+/// Enough that none fails: every second view or so will do.
+const TRIES: usize = 100;
+
 pub(super) fn edge(draw: &mut Draw, index: usize) -> Setup {
     let placement = Placement::draw(draw, index);
     let (start, along) = (draw.within(1.5), draw.unit() * draw.range(0.5, 4.0));
@@ -55,7 +58,17 @@ pub(super) fn edge(draw: &mut Draw, index: usize) -> Setup {
         .map(|wing| placement.put(wing));
     let (a, b) = (placement.put(start), placement.put(start + along));
     let target = a + (b - a) * draw.range(0.02, 0.98);
-    let origin = target + draw.unit() * draw.range(1.0, 9.0) * placement.scale;
+    let mut aim = || target + draw.unit() * draw.range(1.0, 9.0) * placement.scale;
+    // Seen from where the triangles lie on either side of the edge: at a silhouette, where both lie
+    // on one side, a ray past the edge is no leak.
+    let mut origin = aim();
+    for _ in 0..TRIES {
+        let [one, other] = wings.map(|wing| (target - origin).dot((b - a).cross(wing - a)));
+        if one * other < 0.0 {
+            break;
+        }
+        origin = aim();
+    }
     let ray = draw.ray_to(origin, target);
     setup(draw, wings.map(|wing| [a, b, wing]).to_vec(), ray, placement.note())
 }

@@ -59,9 +59,11 @@ impl<S: Scalar> Cylinder<S> {
         }
         let power = (cx * cx + cz * cz) - radius_squared;
         let (near, far) = quadric::roots(closest, discriminant, power, aim.inverse_square);
+        // Differences first, as everywhere.
+        let (to_bottom, to_top) = (L::splat(self.bottom.y) - ray.origin.y, L::splat(self.top) - ray.origin.y);
         let on_wall = |t: L| {
-            let y = ray.origin.y + dy * t;
-            zero.lt(t) & L::splat(self.bottom.y).le(y) & y.le(L::splat(self.top))
+            let climb = dy * t;
+            zero.lt(t) & to_bottom.le(climb) & climb.le(to_top)
         };
         let t = L::select(on_wall(near), near, L::select(on_wall(far), far, miss()));
         L::select(crossed, t, miss())

@@ -10,13 +10,19 @@ use crate::vector::Vector;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Plane<S> {
     pub(crate) point: Vector<S>,
-    /// Of unit length.
+    /// As the scene gives it, but for a power of two: made unit it would lose its last digits, and
+    /// a ray that starts in the plane would hit it.
     pub(crate) normal: Vector<S>,
+    unit_normal: Vector<S>,
 }
 
 impl<S: Scalar> Plane<S> {
     pub(crate) fn new(plane: &scene::Plane) -> Self {
-        Self { point: Vector::rounded(plane.point), normal: Vector::rounded(scene::unit(plane.normal)) }
+        Self {
+            point: Vector::rounded(plane.point),
+            normal: Vector::rounded(scene::near_one(plane.normal)),
+            unit_normal: Vector::rounded(scene::unit(plane.normal)),
+        }
     }
 
     /// `t = n . (point - origin) / n . d`: the difference first, so that a scene far from the
@@ -30,7 +36,7 @@ impl<S: Scalar> Plane<S> {
 
     #[inline(always)]
     pub(crate) fn surface<L: Lane<Scalar = S>>(&self, near: Vector<L>) -> SurfacePoint<L> {
-        let (anchor, normal) = (Vector::splat(self.point), Vector::splat(self.normal));
+        let (anchor, normal) = (Vector::splat(self.point), Vector::splat(self.unit_normal));
         let point = near - normal * normal.dot(near - anchor);
         SurfacePoint { point, normal, clearance: clearance(normal, point, anchor.abs()) }
     }

@@ -5,12 +5,15 @@ use crate::lane::{Lane, Mask, Scalar, sign_of_difference};
 use crate::ray::{Ray, miss};
 use crate::scene;
 use crate::vector::Vector;
+use glam::DVec3;
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Triangle<S> {
     pub(crate) vertices: [Vector<S>; 3],
-    /// Of unit length, or zero when rounding took the triangle's area: then no ray hits it.
+    /// Of a length near 1, but not made unit, which would cost digits; or zero when rounding took the
+    /// triangle's area: then no ray hits it.
     pub(crate) normal: Vector<S>,
+    unit_normal: Vector<S>,
     /// The largest magnitude of each coordinate.
     reach: Vector<S>,
 }
@@ -68,11 +71,13 @@ impl<S: Scalar> Triangle<S> {
         let vertices = triangle.vertices.map(Vector::rounded);
         let [a, b, c] = vertices.map(Vector::widened);
         let normal = if scene::parallel(b - a, c - a) {
-            Vector::zero()
+            DVec3::ZERO
         } else {
-            Vector::rounded(scene::unit((b - a).cross(c - a)))
+            scene::near_one(scene::near_one(b - a).cross(scene::near_one(c - a)))
         };
-        Self { vertices, normal, reach: Vector::rounded(a.abs().max(b.abs()).max(c.abs())) }
+        let unit_normal = normal.normalize_or_zero();
+        let [normal, unit_normal] = [normal, unit_normal].map(Vector::rounded);
+        Self { vertices, normal, unit_normal, reach: Vector::rounded(a.abs().max(b.abs()).max(c.abs())) }
     }
 
     /// The edge test of Woop, Benthin and Wald (Watertight Ray/Triangle Intersection, JCGT 2013):
@@ -108,7 +113,7 @@ impl<S: Scalar> Triangle<S> {
 
     #[inline(always)]
     pub(crate) fn surface<L: Lane<Scalar = S>>(&self, near: Vector<L>) -> SurfacePoint<L> {
-        let normal = Vector::splat(self.normal);
+        let normal = Vector::splat(self.unit_normal);
         let point = near - normal * normal.dot(near - Vector::splat(self.vertices[0]));
         SurfacePoint { point, normal, clearance: clearance(normal, point, Vector::splat(self.reach)) }
     }
