@@ -1,0 +1,28 @@
+//! The kernel that renders against the committed hard cases.
+
+use rayweave_accuracy::{Tier, cases, kernel, score};
+use rayweave_core::{Arithmetic, Formulas, Precision};
+
+/// How many families miss their goals.
+fn misses(formulas: Formulas, precision: Precision, tier: Tier) -> Vec<String> {
+    let corpus = include_str!("../corpus/hard-cases.jsonl");
+    let cases = cases::read(corpus.as_bytes()).expect("the corpus");
+    let arithmetic = Arithmetic { formulas, precision };
+    let outcomes: Vec<_> = cases.iter().map(|case| kernel::outcome(case, arithmetic)).collect();
+    let scores = score(&cases, &outcomes);
+    scores.into_iter().filter(|score| !tier.missed(score).is_empty()).map(|score| score.family).collect()
+}
+
+/// Catches any formula of the kernel that loses a verdict or its stability.
+#[test]
+fn the_robust_formulas_reach_their_goals() {
+    assert_eq!(misses(Formulas::Robust, Precision::F32, Tier::Plain32), [""; 0]);
+    assert_eq!(misses(Formulas::Robust, Precision::F64, Tier::Double), [""; 0]);
+}
+
+/// Catches a corpus, or a score, that everything passes.
+#[test]
+fn the_textbook_formulas_do_not() {
+    let misses = misses(Formulas::Textbook, Precision::F32, Tier::Plain32);
+    assert!(misses.len() > 10, "{misses:?}");
+}
