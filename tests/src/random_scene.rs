@@ -144,6 +144,7 @@ impl Draw {
             background: if self.chance(0.3) { DVec3::ZERO } else { self.color() },
             max_reflections: if self.chance(0.9) { self.integer(0..=8) } else { self.integer(9..=64) },
             antialiasing: self.integer(0..=4),
+            ..RenderSettings::default()
         }
     }
 

@@ -22,7 +22,12 @@ fn scene() -> Scene {
             focal_length: 1.0,
             screen_width: 0.8,
         },
-        render: RenderSettings { background: DVec3::Z, max_reflections: 1, antialiasing: 0 },
+        render: RenderSettings {
+            background: DVec3::Z,
+            max_reflections: 1,
+            antialiasing: 0,
+            ..RenderSettings::default()
+        },
         lights: Vec::new(),
         materials: vec![Material { ambient: 0.0, diffuse: 1.0, specular: 0.0, ..Material::new(DVec3::X) }],
         planes: Vec::new(),

@@ -1,7 +1,7 @@
 //! The slips of the report: on the model that the tracer is compared with, and on the tracer.
 
 use glam::DVec3;
-use rayweave_core::{Precision, Scene, cast};
+use rayweave_core::{Caster, Precision, Scene};
 use rayweave_tests::errata::{LATTICE, LatticeWitness, RAYS, shadings};
 use rayweave_tests::model::{Primitive, render, samples};
 use rayweave_tests::picture;
@@ -104,7 +104,7 @@ fn the_tracer_s_rays_hit_where_they_should() {
         let what = format!("{} in {precision}: {}", witness.name, witness.report);
         let scene = alone(witness.primitive);
         let (origin, direction) = (witness.ray.origin, witness.ray.direction);
-        let found = cast::nearest_hit(&scene, origin, direction, precision).expect(&what);
+        let found = Caster::new(&scene, precision).expect(&what).nearest_hit(origin, direction);
         let (Some(hit), Some(expected)) = (found, witness.expected) else {
             assert_eq!(found.is_some(), witness.expected.is_some(), "{what}: {found:?}");
             continue;
@@ -126,7 +126,7 @@ fn the_tracer_s_colours_are_as_they_should() {
         let expected = DVec3::from_array(witness.expected);
         let camera = witness.scene.camera;
         let view = camera.look_at - camera.position;
-        let seen = cast::color(&witness.scene, camera.position, view, precision).expect(&what);
+        let seen = Caster::new(&witness.scene, precision).expect(&what).color(camera.position, view);
         assert!(DVec3::from_array(seen).distance(expected) < tolerance(precision), "{what}: {seen:?}");
         // Pictures are kept in `f32`.
         let picture = picture::of_scene(&witness.scene, 1, 1, precision);

@@ -8,7 +8,8 @@ use glam::DVec3;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use rayweave_core::cast::{self, Hit};
+use rayweave_core::Caster;
+use rayweave_core::cast::Hit;
 use rayweave_core::scene::{Cylinder, Plane, Sphere, Triangle};
 use rayweave_core::{Precision, Scene};
 use rayweave_tests::errata;
@@ -137,7 +138,7 @@ fn things_of(scene: &Scene) -> Vec<Primitive> {
 }
 
 fn hit(scene: &Scene, ray: &Ray, precision: Precision) -> Option<Hit> {
-    cast::nearest_hit(scene, ray.origin, ray.direction, precision).expect("a sound scene")
+    Caster::new(scene, precision).expect("a sound scene").nearest_hit(ray.origin, ray.direction)
 }
 
 fn hit_alone(thing: Primitive, ray: &Ray, precision: Precision) -> Option<Hit> {

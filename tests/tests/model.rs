@@ -25,7 +25,12 @@ fn empty() -> Scene {
             focal_length: 2.0,
             screen_width: 4.0,
         },
-        render: RenderSettings { background: DVec3::splat(0.5), max_reflections: 4, antialiasing: 0 },
+        render: RenderSettings {
+            background: DVec3::splat(0.5),
+            max_reflections: 4,
+            antialiasing: 0,
+            ..RenderSettings::default()
+        },
         lights: Vec::new(),
         materials: [DVec3::X, DVec3::Y, DVec3::Z].map(glowing).to_vec(),
         planes: Vec::new(),

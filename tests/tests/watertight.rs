@@ -5,7 +5,7 @@ use glam::DVec3;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use rayweave_core::scene::Triangle;
-use rayweave_core::{Precision, Scene, cast};
+use rayweave_core::{Caster, Precision, Scene};
 use rayweave_tests::errata;
 use rayweave_tests::transform::{enlarged, moved};
 
@@ -68,6 +68,10 @@ fn scene_of(mesh: &[[DVec3; 3]]) -> Scene {
     Scene { triangles, ..errata::shadings().swap_remove(0).scene }
 }
 
+fn caster(scene: &Scene, precision: Precision) -> Caster {
+    Caster::new(scene, precision).expect("a sound scene")
+}
+
 /// Where a ray is aimed: at a corner, a point of an edge or one of a face, of some triangle.
 fn aim() -> impl Strategy<Value = [f64; 3]> {
     let share = || (0..=16i32).prop_map(|k| f64::from(k) / 16.0);
@@ -113,7 +117,7 @@ proptest! {
         let origin = (from + offset) * scale;
         let direction = scale * (aim - from);
         for precision in [Precision::F32, Precision::F64] {
-            let hit = cast::nearest_hit(&scene, origin, direction, precision).expect("a sound scene");
+            let hit = caster(&scene, precision).nearest_hit(origin, direction);
             prop_assert!(hit.is_some(), "{precision}: from {origin} along {direction}");
             // A leak to a triangle behind would be nearer or farther.
             let t = hit.map_or(0.0, |hit| hit.t);
@@ -136,7 +140,7 @@ fn no_ray_leaves_a_cube_through_its_symmetries() {
     for from in grid().map(|point| 0.5 * point) {
         for aim in grid().filter(|point| point.abs().max_element() == 1.0) {
             for precision in [Precision::F32, Precision::F64] {
-                let hit = cast::nearest_hit(&scene, from, aim - from, precision).expect("a sound scene");
+                let hit = caster(&scene, precision).nearest_hit(from, aim - from);
                 let hit = hit.unwrap_or_else(|| panic!("{precision}: from {from} to {aim}: a leak"));
                 assert!((hit.t - 1.0).abs() < 1e-6, "{precision}: from {from} to {aim}: {hit:?}");
             }
@@ -156,8 +160,8 @@ fn a_ray_beside_an_edge_hits_one_side() {
             for (aside, hits) in [(DVec3::new(10.0, -10.0, 4.0), true), (DVec3::new(-10.0, 10.0, 4.0), false)]
             {
                 for vertices in [[from, to, aside], [to, from, aside], [aside, from, to]] {
-                    let hit = cast::nearest_hit(&scene_of(&[vertices]), DVec3::ZERO, DVec3::Z, precision);
-                    assert_eq!(hit.expect("a sound scene").is_some(), hits, "{precision}: {vertices:?}");
+                    let hit = caster(&scene_of(&[vertices]), precision).nearest_hit(DVec3::ZERO, DVec3::Z);
+                    assert_eq!(hit.is_some(), hits, "{precision}: {vertices:?}");
                 }
             }
         }

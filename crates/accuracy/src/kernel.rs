@@ -3,9 +3,8 @@
 use crate::cases::{Case, Primitive};
 use crate::outcomes::Outcome;
 use glam::DVec3;
-use rayweave_core::cast::nearest_hit;
 use rayweave_core::scene::{Camera, Cylinder, Material, Plane, RenderSettings, Scene, Sphere, Triangle};
-use rayweave_core::{Arithmetic, Precision};
+use rayweave_core::{Arithmetic, Caster, Precision};
 
 /// What the kernel that renders answers to `case`. Input that means nothing, which no scene may
 /// contain, is a miss; so is every triangle without area.
@@ -14,7 +13,7 @@ pub fn outcome(case: &Case, arithmetic: Arithmetic) -> Outcome {
     let scene = scene_of(&case.primitive);
     let (origin, direction) = (vector(case.ray.origin), vector(case.ray.direction));
     // A scene that is refused hits nothing.
-    let hit = nearest_hit(&scene, origin, direction, arithmetic).ok().flatten();
+    let hit = Caster::new(&scene, arithmetic).ok().and_then(|caster| caster.nearest_hit(origin, direction));
     let t = hit.map(|hit| match arithmetic.precision {
         Precision::F32 => f64::from(hit.t as f32),
         Precision::F64 => hit.t,

@@ -1,35 +1,193 @@
-//! The filter over the sampling lattice: `exp(-(dx^2 + dy^2) / 0.64)`, which is the product of the
-//! same function of each coordinate, so that rows and columns are weighted one after the other.
+//! The filter `exp(-(dx^2 + dy^2) / 0.64)` over the square out to one pixel from a pixel's centre, as
+//! a sum over samples. It is the product of the same function of each coordinate.
 
 use crate::lane::Scalar;
+use crate::scene::{RenderSettings, Sampling};
 
-/// The weights of one row of samples, whose sum is 1 but for rounding; those of the rows are the same.
+/// The samples of a pixel, row by row: the same around every pixel's centre.
 #[derive(Clone, Debug)]
 pub(crate) struct Filter<S> {
-    weights: Vec<S>,
-    /// Lattice steps a pixel, 1 or more.
+    rows: Vec<Row<S>>,
+    /// The unit of places: so many half steps are half a pixel.
     density: u32,
 }
 
+/// Samples of one height.
+#[derive(Clone, Debug)]
+pub(crate) struct Row<S> {
+    /// Below the pixel's centre, in half steps.
+    pub(crate) down: S,
+    /// Of the row; those of all rows have a sum of 1 but for rounding.
+    pub(crate) weight: S,
+    pub(crate) samples: Vec<Sample<S>>,
+}
+
+/// One ray.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sample<S> {
+    /// To the right of the pixel's centre, in half steps.
+    pub(crate) right: S,
+    /// Within the row, where the sum is 1 but for rounding.
+    pub(crate) weight: S,
+}
+
 impl<S: Scalar> Filter<S> {
-    /// For a density `s` as in [`crate::scene::RenderSettings::antialiasing`].
-    pub(crate) fn new(antialiasing: u32) -> Self {
-        let density = antialiasing.max(1);
-        let reach = f64::from(antialiasing);
-        let steps = || (0..=2 * antialiasing).map(|i| (f64::from(i) - reach) / f64::from(density));
-        // `libm` computes in software: the same bits on every machine.
-        let weight = |offset: f64| libm::exp(-(offset * offset) / 0.64);
-        let sum: f64 = steps().map(weight).sum();
-        Self { weights: steps().map(|offset| S::from_f64(weight(offset) / sum)).collect(), density }
+    pub(crate) fn new(settings: &RenderSettings) -> Self {
+        match (settings.antialiasing, settings.sampling) {
+            (0, _) => Self::importance(1),
+            (density, Sampling::Lattice) => Self::lattice(density),
+            (density, Sampling::Importance) => Self::importance((2 * density + 1).pow(2)),
+        }
     }
 
-    /// Lattice steps a pixel.
+    /// Half steps from a pixel's edge to its centre.
     pub(crate) fn density(&self) -> u32 {
         self.density
     }
 
-    /// From the first to the last sample of a row, or row of a column.
-    pub(crate) fn weights(&self) -> &[S] {
-        &self.weights
+    pub(crate) fn rows(&self) -> &[Row<S>] {
+        &self.rows
+    }
+
+    /// `(2 s + 1)^2` samples of a square lattice with `s` steps a pixel. Places are whole numbers of
+    /// half steps, so neighbouring pixels share them to the bit.
+    fn lattice(density: u32) -> Self {
+        let reach = f64::from(density);
+        let steps = || (0..=2 * density).map(|i| f64::from(i) - reach);
+        // `libm` computes in software: the same bits on every machine.
+        let weight = |step: f64| libm::exp(-(step / reach) * (step / reach) / 0.64);
+        let sum: f64 = steps().map(weight).sum();
+        let samples: Vec<Sample<S>> = steps()
+            .map(|step| Sample { right: S::from_f64(2.0 * step), weight: S::from_f64(weight(step) / sum) })
+            .collect();
+        let row =
+            |sample: &Sample<S>| Row { down: sample.right, weight: sample.weight, samples: samples.clone() };
+        Self { rows: samples.iter().map(row).collect(), density }
+    }
+
+    /// `count` samples of equal weight, as dense as the filter is high (filter importance sampling:
+    /// Ernst, Stamminger and Greiner, 2006): the points of a rank-1 lattice in the unit square
+    /// (Dammertz and Keller, Image Synthesis by Rank-1 Lattices, 2008), each coordinate moved by the
+    /// inverse of the filter's distribution. No two share a row or a column, so an edge along an
+    /// axis is resolved `count` fold, where a square lattice of as many samples resolves it by the
+    /// square root of that.
+    fn importance(count: u32) -> Self {
+        let generator = rank1_generator(count);
+        // Turned by half a turn around the pixel's centre the samples are what they were: so what
+        // changes evenly across the pixel is right to the last digit. It asks that the row of the
+        // first column, `shift`, is as far from the top as that of the last is from the bottom:
+        // 2 shift = generator - 1, modulo the odd count.
+        let shift = (u64::from(generator) + u64::from(count) - 1) * u64::from(count).div_ceil(2);
+        let half_pixels = |i: u64| S::from_f64(2.0 * filter_quantile((i as f64 + 0.5) / f64::from(count)));
+        let row = |column: u64| {
+            let row = (column * u64::from(generator) + shift) % u64::from(count);
+            Row {
+                down: half_pixels(row),
+                weight: S::from_f64(1.0 / f64::from(count)),
+                samples: vec![Sample { right: half_pixels(column), weight: S::from_f64(1.0) }],
+            }
+        };
+        Self { rows: (0..u64::from(count)).map(row).collect(), density: 1 }
+    }
+}
+
+/// The `g` for which the points `(i, i g)` modulo `count`, an odd number, keep the largest distance
+/// from each other, around the edges too, and lie in different rows.
+fn rank1_generator(count: u32) -> u32 {
+    let around = |x: u64| x.min(u64::from(count) - x).pow(2);
+    let distance = |g: u32| {
+        let points = (1..u64::from(count)).map(|i| around(i) + around(i * u64::from(g) % u64::from(count)));
+        points.min().unwrap_or(0)
+    };
+    let one_a_row = |g: &u32| greatest_common_divisor(*g, count) == 1;
+    // Those above the middle are mirror images; of equal ones the first.
+    (1..=count / 2).filter(one_a_row).rev().max_by_key(|&g| distance(g)).unwrap_or(1)
+}
+
+fn greatest_common_divisor(a: u32, b: u32) -> u32 {
+    if b == 0 { a } else { greatest_common_divisor(b, a % b) }
+}
+
+/// The place, in pixels from -1 to 1, below which the share `share` of the filter lies, in one
+/// coordinate: the inverse of `(1 + erf(x / 0.8) / erf(1 / 0.8)) / 2`.
+fn filter_quantile(share: f64) -> f64 {
+    let wanted = (2.0 * share - 1.0).abs() * libm::erf(1.0 / 0.8);
+    // Halving the interval: slow, and the same on every machine.
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..f64::MANTISSA_DIGITS {
+        let middle = f64::midpoint(low, high);
+        if libm::erf(middle / 0.8) < wanted { low = middle } else { high = middle }
+    }
+    if share < 0.5 { -high } else { low }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn importance(count: u32) -> Vec<(f64, f64)> {
+        let filter = Filter::<f64>::importance(count);
+        filter.rows.iter().map(|row| (row.samples[0].right / 2.0, row.down / 2.0)).collect()
+    }
+
+    /// Catches a sum other than 1, of either pattern: a plain surface would change its colour.
+    #[test]
+    fn the_weights_sum_to_one() {
+        for antialiasing in [0, 1, 2, 5, 32] {
+            for sampling in [Sampling::Lattice, Sampling::Importance] {
+                let settings = RenderSettings { antialiasing, sampling, ..RenderSettings::default() };
+                let filter = Filter::<f64>::new(&settings);
+                let rows = filter.rows().iter();
+                let sum: f64 = rows.map(|r| r.weight * r.samples.iter().map(|s| s.weight).sum::<f64>()).sum();
+                assert!((sum - 1.0).abs() < 1e-13, "{sampling:?} {antialiasing}: {sum}");
+                let count: usize = filter.rows().iter().map(|row| row.samples.len()).sum();
+                let expected = if antialiasing == 0 { 1 } else { (2 * antialiasing + 1).pow(2) as usize };
+                assert_eq!(count, expected);
+            }
+        }
+    }
+
+    /// Catches a shift that breaks the symmetry, a generator that puts two samples into one row, and
+    /// a place outside of the filter.
+    #[test]
+    fn importance_samples_are_symmetric_and_in_rows_of_their_own() {
+        for count in [1, 9, 25, 49, 81, 169, 289, 1089] {
+            let mut places = importance(count);
+            assert!(places.iter().all(|(x, y)| x.abs() < 1.0 && y.abs() < 1.0));
+            for (x, y) in &places {
+                let opposite = places.iter().any(|(a, b)| (a + x).abs() < 1e-15 && (b + y).abs() < 1e-15);
+                assert!(opposite, "{count}: ({x}, {y}) has no opposite");
+            }
+            places.sort_by(|a, b| a.1.total_cmp(&b.1));
+            assert!(places.windows(2).all(|pair| pair[0].1 < pair[1].1), "{count}: two samples in a row");
+        }
+    }
+
+    /// Catches a quantile of another function: the moments of the samples tend to the filter's.
+    #[test]
+    fn importance_samples_have_the_filter_s_second_moment() {
+        // Simpson's rule over the filter in one coordinate.
+        let steps = 2000;
+        let simpson = |f: &dyn Fn(f64) -> f64| -> f64 {
+            let weight = |i: i32| if i == 0 || i == steps { 1.0 } else { f64::from(2 + 2 * (i % 2)) };
+            (0..=steps).map(|i| weight(i) * f(f64::from(i) / f64::from(steps))).sum()
+        };
+        let filter = |x: f64| libm::exp(-x * x / 0.64);
+        let moment = simpson(&|x| x * x * filter(x)) / simpson(&filter);
+        let places = importance(4225);
+        let found = |of: fn(&(f64, f64)) -> f64| {
+            places.iter().map(of).map(|x| x * x).sum::<f64>() / places.len() as f64
+        };
+        assert!((found(|p| p.0) - moment).abs() < 1e-6, "{} in x, {moment} expected", found(|p| p.0));
+        assert!((found(|p| p.1) - moment).abs() < 1e-6, "{} in y, {moment} expected", found(|p| p.1));
+    }
+
+    /// Catches a search that is content with less: of 25 points the best keep a squared distance of 25
+    /// (7 columns and 1 row, or 3 and 4).
+    #[test]
+    fn the_generator_keeps_points_apart() {
+        for (count, expected) in [(1, 1), (9, 2), (25, 7), (49, 9), (81, 31)] {
+            assert_eq!(rank1_generator(count), expected, "{count}");
+        }
     }
 }

@@ -1,9 +1,7 @@
 //! Single rays through the kernel that renders, for tests and for whoever studies it.
 
-use crate::formulas::{Arithmetic, Family, Formulas, Robust, Textbook};
+use crate::formulas::{Arithmetic, Compiled, Family};
 use crate::lane::Scalar;
-use crate::precision::Precision;
-use crate::primitives::Primitives;
 use crate::ray::Ray;
 use crate::scene::{Scene, SceneError, near_one};
 use crate::trace::World;
@@ -23,72 +21,70 @@ pub struct Hit {
     pub normal: DVec3,
 }
 
-/// The nearest hit of the ray from `origin` in `direction`, which may have any length but 0. All
-/// numbers are first rounded to the precision. A zero direction, or one that is not finite, hits
-/// nothing.
-///
-/// # Errors
-///
-/// A scene that [`Scene::check`] rejects.
-pub fn nearest_hit(
-    scene: &Scene,
-    origin: DVec3,
-    direction: DVec3,
-    arithmetic: impl Into<Arithmetic>,
-) -> Result<Option<Hit>, SceneError> {
-    scene.check()?;
-    let Arithmetic { formulas, precision } = arithmetic.into();
-    Ok(match (formulas, precision) {
-        (Formulas::Robust, Precision::F32) => nearest_hit_in::<f32, Robust>(scene, origin, direction),
-        (Formulas::Robust, Precision::F64) => nearest_hit_in::<f64, Robust>(scene, origin, direction),
-        (Formulas::Textbook, Precision::F32) => nearest_hit_in::<f32, Textbook>(scene, origin, direction),
-        (Formulas::Textbook, Precision::F64) => nearest_hit_in::<f64, Textbook>(scene, origin, direction),
-    })
+/// A scene ready for single rays in one arithmetic.
+pub struct Caster(Box<dyn Cast + Send + Sync>);
+
+impl Caster {
+    /// Of `scene`, all of whose numbers are rounded to the precision.
+    ///
+    /// # Errors
+    ///
+    /// A scene that [`Scene::check`] rejects.
+    pub fn new(scene: &Scene, arithmetic: impl Into<Arithmetic>) -> Result<Self, SceneError> {
+        scene.check()?;
+        Ok(Self(arithmetic.into().select(scene)))
+    }
+
+    /// The nearest hit of the ray from `origin` in `direction`, which may have any length but 0. Both
+    /// are first rounded to the precision. A zero direction, or one that is not finite, hits nothing.
+    #[must_use]
+    pub fn nearest_hit(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
+        self.0.nearest_hit(origin, direction)
+    }
+
+    /// The colour, linear and not clamped, that comes back along the ray from `origin` in
+    /// `direction`, which is made unit.
+    #[must_use]
+    pub fn color(&self, origin: DVec3, direction: DVec3) -> [f64; 3] {
+        self.0.color(origin, direction)
+    }
 }
 
-fn nearest_hit_in<S: Scalar, F: Family>(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<Hit> {
-    // The longest component is brought near 1 by a power of two, which rounds nothing: the squares
-    // of a very long or short direction would over- or underflow. The renderer's own are unit, or
-    // reach from a point to a light.
-    let (_, exponent) = libm::frexp(direction.abs().max_element());
-    let ray = Ray::<S> { origin: Vector::rounded(origin), direction: Vector::rounded(near_one(direction)) };
-    let primitives = Primitives::new(scene);
-    let hit = primitives.nearest::<S, F>(&ray);
-    hit.exists().then(|| {
-        let at = primitives.surface::<S, F>(hit.primitive, &ray, hit.t);
-        Hit {
-            t: libm::scalbn(hit.t.to_f64(), -exponent),
-            primitive: hit.primitive as usize,
-            point: at.point.widened(),
-            normal: at.normal.widened(),
-        }
-    })
+impl Compiled for &Scene {
+    type Output = Box<dyn Cast + Send + Sync>;
+
+    fn compiled<S: Scalar, F: Family>(self) -> Self::Output {
+        Box::new(World::<S, F>::new(self))
+    }
 }
 
-/// The colour, linear and not clamped, that comes back along the ray from `origin` in `direction`,
-/// which is made unit. All numbers are first rounded to the precision.
-///
-/// # Errors
-///
-/// A scene that [`Scene::check`] rejects.
-pub fn color(
-    scene: &Scene,
-    origin: DVec3,
-    direction: DVec3,
-    arithmetic: impl Into<Arithmetic>,
-) -> Result<[f64; 3], SceneError> {
-    scene.check()?;
-    let Arithmetic { formulas, precision } = arithmetic.into();
-    Ok(match (formulas, precision) {
-        (Formulas::Robust, Precision::F32) => color_in::<f32, Robust>(scene, origin, direction),
-        (Formulas::Robust, Precision::F64) => color_in::<f64, Robust>(scene, origin, direction),
-        (Formulas::Textbook, Precision::F32) => color_in::<f32, Textbook>(scene, origin, direction),
-        (Formulas::Textbook, Precision::F64) => color_in::<f64, Textbook>(scene, origin, direction),
-    })
+pub(crate) trait Cast {
+    fn nearest_hit(&self, origin: DVec3, direction: DVec3) -> Option<Hit>;
+    fn color(&self, origin: DVec3, direction: DVec3) -> [f64; 3];
 }
 
-fn color_in<S: Scalar, F: Family>(scene: &Scene, origin: DVec3, direction: DVec3) -> [f64; 3] {
-    let direction = Vector::<S>::rounded(direction).unit();
-    let color = World::<S, F>::new(scene).trace(Ray { origin: Vector::rounded(origin), direction }, true);
-    color.widened().to_array()
+impl<S: Scalar, F: Family> Cast for World<S, F> {
+    fn nearest_hit(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
+        // The longest component is brought near 1 by a power of two, which rounds nothing: the squares
+        // of a very long or short direction would over- or underflow. The renderer's own are unit, or
+        // reach from a point to a light.
+        let (_, exponent) = libm::frexp(direction.abs().max_element());
+        let ray =
+            Ray::<S> { origin: Vector::rounded(origin), direction: Vector::rounded(near_one(direction)) };
+        let hit = self.primitives.nearest::<S, F>(&ray);
+        hit.exists().then(|| {
+            let at = self.primitives.surface::<S, F>(hit.primitive, &ray, hit.t);
+            Hit {
+                t: libm::scalbn(hit.t.to_f64(), -exponent),
+                primitive: hit.primitive as usize,
+                point: at.point.widened(),
+                normal: at.normal.widened(),
+            }
+        })
+    }
+
+    fn color(&self, origin: DVec3, direction: DVec3) -> [f64; 3] {
+        let direction = Vector::<S>::rounded(direction).unit();
+        self.trace(Ray { origin: Vector::rounded(origin), direction }, true).widened().to_array()
+    }
 }

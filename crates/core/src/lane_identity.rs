@@ -139,7 +139,12 @@ fn scene() -> Scene {
             focal_length: 1.0,
             screen_width: 2.0,
         },
-        render: RenderSettings { background: v(0.1, 0.2, 0.3), max_reflections: 6, antialiasing: 2 },
+        render: RenderSettings {
+            background: v(0.1, 0.2, 0.3),
+            max_reflections: 6,
+            antialiasing: 2,
+            ..RenderSettings::default()
+        },
         lights: vec![
             scene::Light { position: v(5.0, 8.0, 1.0), color: v(1.0, 0.9, 0.8), power: 0.8 },
             scene::Light { position: v(-3.0, 2.0, 6.0), color: v(0.5, 0.6, 1.0), power: 0.7 },

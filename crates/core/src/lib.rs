@@ -28,10 +28,11 @@ pub mod tracer;
 mod vector;
 pub mod work;
 
+pub use cast::Caster;
 pub use formulas::{Arithmetic, Formulas};
 pub use image::{Area, Digest, Image, Rgb, Tile};
 pub use precision::Precision;
-pub use scene::Scene;
+pub use scene::{Sampling, Scene};
 pub use strategy::{Plan, Renderer, Strategy, StrategyError, ThreadsStart};
 pub use tracer::tracer;
 pub use work::Work;

@@ -51,13 +51,26 @@ pub struct RenderSettings {
     pub background: DVec3,
     /// Mirror bounces after the primary ray, 0..=64.
     pub max_reflections: u32,
-    /// Lattice density `s`: 0 for one ray a pixel, else 1..=32 for `(2 s + 1)^2` samples a pixel.
+    /// Density `s`: 0 for one ray a pixel, else 1..=32 for `(2 s + 1)^2` samples a pixel.
     pub antialiasing: u32,
+    /// Where in and around a pixel these samples lie.
+    pub sampling: Sampling,
+}
+
+/// Where the samples of a pixel lie. Both patterns are the same for every pixel, and tend to the
+/// integral of the filter over the picture as their number grows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Sampling {
+    /// On a square lattice, weighted by the filter: what a scene file means.
+    #[default]
+    Lattice,
+    /// Of equal weight and as dense as the filter is high. As many rays, and less error.
+    Importance,
 }
 
 impl Default for RenderSettings {
     fn default() -> Self {
-        Self { background: DVec3::ZERO, max_reflections: 4, antialiasing: 2 }
+        Self { background: DVec3::ZERO, max_reflections: 4, antialiasing: 2, sampling: Sampling::Lattice }
     }
 }
 

@@ -14,7 +14,7 @@ use std::marker::PhantomData;
 /// A scene in the precision and with the formulas of a picture, ready for rays.
 #[derive(Debug)]
 pub(crate) struct World<S, F> {
-    primitives: Primitives<S>,
+    pub(crate) primitives: Primitives<S>,
     materials: Vec<Material<S>>,
     lights: Vec<Light<S>>,
     background: Vector<S>,

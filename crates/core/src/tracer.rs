@@ -2,10 +2,9 @@
 
 use crate::antialiasing::Filter;
 use crate::camera::Camera;
-use crate::formulas::{Arithmetic, Family, Formulas, Robust, Textbook};
+use crate::formulas::{Arithmetic, Compiled, Family};
 use crate::image::{Rgb, Tile};
 use crate::lane::Scalar;
-use crate::precision::Precision;
 use crate::scene::{Scene, SceneError};
 use crate::trace::World;
 use crate::vector::Vector;
@@ -33,55 +32,56 @@ pub fn tracer(
     arithmetic: impl Into<Arithmetic>,
 ) -> Result<Box<dyn Work + Send>, SceneError> {
     scene.check()?;
-    let Arithmetic { formulas, precision } = arithmetic.into();
-    Ok(match (formulas, precision) {
-        (Formulas::Robust, Precision::F32) => Box::new(Tracer::<f32, Robust>::new(scene, width, height)),
-        (Formulas::Robust, Precision::F64) => Box::new(Tracer::<f64, Robust>::new(scene, width, height)),
-        (Formulas::Textbook, Precision::F32) => Box::new(Tracer::<f32, Textbook>::new(scene, width, height)),
-        (Formulas::Textbook, Precision::F64) => Box::new(Tracer::<f64, Textbook>::new(scene, width, height)),
-    })
+    Ok(arithmetic.into().select(Picture { scene, width, height }))
 }
 
-impl<S: Scalar, F: Family> Tracer<S, F> {
-    fn new(scene: &Scene, width: u32, height: u32) -> Self {
-        let filter = Filter::new(scene.render.antialiasing);
-        Self {
+/// What a tracer is compiled for.
+struct Picture<'a> {
+    scene: &'a Scene,
+    width: u32,
+    height: u32,
+}
+
+impl Compiled for Picture<'_> {
+    type Output = Box<dyn Work + Send>;
+
+    fn compiled<S: Scalar, F: Family>(self) -> Self::Output {
+        let Picture { scene, width, height } = self;
+        let filter = Filter::new(&scene.render);
+        Box::new(Tracer::<S, F> {
             world: World::new(scene),
             camera: Camera::new(&scene.camera, width, filter.density()),
             filter,
             width,
             height,
-        }
+        })
     }
+}
 
+impl<S: Scalar, F: Family> Tracer<S, F> {
     /// The filtered samples around one pixel.
     ///
     /// Each row of samples is summed from the left, then the rows from the top: a fixed order, and
     /// one in which a row's sum could serve every pixel that needs it.
     fn pixel(&self, x: u32, y: u32) -> Rgb {
-        let weights = self.filter.weights();
+        let (right, down) = (self.centre(x, self.width), self.centre(y, self.height));
         let mut color = Vector::zero();
-        for (j, &row_weight) in (0..).zip(weights) {
-            let mut row = Vector::zero();
-            for (i, &weight) in (0..).zip(weights) {
-                row = row + self.sample(self.place(x, i, self.width), self.place(y, j, self.height)) * weight;
+        for row in self.filter.rows() {
+            let mut row_color = Vector::zero();
+            for sample in &row.samples {
+                let ray = self.camera.ray(right + sample.right, down + row.down);
+                row_color = row_color + self.world.trace(ray, true) * sample.weight;
             }
-            color = color + row * row_weight;
+            color = color + row_color * row.weight;
         }
         [color.x.to_f32(), color.y.to_f32(), color.z.to_f32()]
     }
 
-    fn sample(&self, right: S, down: S) -> Vector<S> {
-        self.world.trace(self.camera.ray(right, down), true)
-    }
-
-    /// Sample `i` of pixel `x` along an axis of `extent` pixels, in half lattice steps from the
+    /// The centre of pixel `x` along an axis of `extent` pixels, in half lattice steps from the
     /// middle of the picture: a whole number below 2^23.
-    fn place(&self, x: u32, i: i64, extent: u32) -> S {
-        let density = i64::from(self.filter.density());
-        let reach = self.filter.weights().len() as i64 / 2;
-        let step = i64::from(x) * density + i - reach;
-        S::from_f64((2 * step + density - density * i64::from(extent)) as f64)
+    fn centre(&self, x: u32, extent: u32) -> S {
+        let half_pixels = 2 * i64::from(x) + 1 - i64::from(extent);
+        S::from_f64((i64::from(self.filter.density()) * half_pixels) as f64)
     }
 }
 

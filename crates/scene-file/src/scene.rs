@@ -125,6 +125,7 @@ fn render(fields: &Fields) -> Result<RenderSettings, Problem> {
         background: fields.optional("background", default.background)?,
         max_reflections: fields.optional("max_reflections", default.max_reflections)?,
         antialiasing: fields.optional("antialiasing", default.antialiasing)?,
+        sampling: default.sampling,
     };
     fields.checked(settings, RenderSettings::check)
 }

@@ -90,7 +90,12 @@ fn camera() -> Camera {
 fn every_key_arrives_where_it_belongs() {
     let scene = Scene {
         camera: camera(),
-        render: RenderSettings { background: [0.0; 3].into(), max_reflections: 4, antialiasing: 2 },
+        render: RenderSettings {
+            background: [0.0; 3].into(),
+            max_reflections: 4,
+            antialiasing: 2,
+            ..RenderSettings::default()
+        },
         lights: vec![Light { position: [-15.0, 10.0, 10.0].into(), color: [1.0; 3].into(), power: 1.0 }],
         materials: vec![Material {
             color: [1.0, 0.0, 0.0].into(),
@@ -176,7 +181,12 @@ reflection = 1
 "
     ));
     assert_eq!(file.image, ImageSize { width: 65535, height: 1 });
-    let render = RenderSettings { background: [0.25, 0.5, 1.0].into(), max_reflections: 64, antialiasing: 0 };
+    let render = RenderSettings {
+        background: [0.25, 0.5, 1.0].into(),
+        max_reflections: 64,
+        antialiasing: 0,
+        ..RenderSettings::default()
+    };
     assert_eq!(file.scene.render, render);
     let light = Light { position: [1.0, 2.0, 3.0].into(), color: [0.5, 0.25, 0.0].into(), power: 7.0 };
     assert_eq!(file.scene.lights, [light]);

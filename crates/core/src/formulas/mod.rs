@@ -9,7 +9,7 @@ mod textbook;
 pub(crate) use robust::Robust;
 pub(crate) use textbook::Textbook;
 
-use crate::lane::Lane;
+use crate::lane::{Lane, Scalar};
 use crate::precision::Precision;
 use crate::ray::Ray;
 use crate::shapes::SurfacePoint;
@@ -40,6 +40,32 @@ pub struct Arithmetic {
     pub formulas: Formulas,
     /// The number type.
     pub precision: Precision,
+}
+
+/// What is compiled once for each arithmetic: the number type and the formulas are type parameters.
+pub(crate) trait Compiled {
+    type Output;
+
+    fn compiled<S: Scalar, F: Family>(self) -> Self::Output;
+}
+
+impl Arithmetic {
+    /// `what` in this arithmetic.
+    pub(crate) fn select<C: Compiled>(self, what: C) -> C::Output {
+        match (self.formulas, self.precision) {
+            (Formulas::Robust, Precision::F32) => what.compiled::<f32, Robust>(),
+            (Formulas::Robust, Precision::F64) => what.compiled::<f64, Robust>(),
+            (Formulas::Textbook, Precision::F32) => what.compiled::<f32, Textbook>(),
+            (Formulas::Textbook, Precision::F64) => what.compiled::<f64, Textbook>(),
+        }
+    }
+}
+
+/// Formulas and number type, as in "robust f32".
+impl fmt::Display for Arithmetic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {}", self.formulas, self.precision)
+    }
 }
 
 /// The robust formulas in this precision.
