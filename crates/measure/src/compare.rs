@@ -1,7 +1,6 @@
 //! The timing protocol: interleaved rounds in which every timed picture is verified.
 //!
-//! * In each round every row is measured once, in an order shuffled by a seeded generator: what
-//!   drifts (heat, clock rate, neighbours) meets all of them, and none is always after the same other.
+//! * In each round every row is measured once, as [`schedule`](crate::schedule) has it.
 //! * A speed-up is the median over the rounds of the ratio to the reference in the same round.
 //! * The reference is measured a second time as the control: its "speed-up" over itself is 1, and
 //!   what its interval says instead is the error of the whole table.
@@ -13,7 +12,7 @@
 //! The protocol has an [`Executor`] do the rendering and the timing, so its logic is tested without
 //! either; [`Stopwatch`](crate::stopwatch::Stopwatch) is the real one.
 
-use crate::random::SplitMix64;
+use crate::schedule::Protocol;
 use crate::statistics::{Interval, efficiency, karp_flatt, median, median_interval};
 use rayweave_core::{Digest, Strategy, ThreadsStart};
 use std::num::NonZeroUsize;
@@ -22,27 +21,6 @@ use thiserror::Error;
 
 #[cfg(test)]
 mod tests;
-
-/// How long and in what order to measure.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Protocol {
-    /// Rounds to measure whatever they take, 1 or more.
-    pub min_rounds: usize,
-    /// Rounds to end after.
-    pub max_rounds: usize,
-    /// No round is begun, after the least number of them, that would go beyond this. The reference
-    /// picture and the warm-up count too.
-    pub budget: Duration,
-    /// Of the order within the rounds.
-    pub seed: u64,
-}
-
-impl Default for Protocol {
-    /// 6 to 40 rounds in 30 seconds: of fewer than 6 there is no 95 % interval.
-    fn default() -> Self {
-        Self { min_rounds: 6, max_rounds: 40, budget: Duration::from_secs(30), seed: 1 }
-    }
-}
 
 /// A strategy with a number of threads to be measured.
 #[derive(Clone, Copy)]
@@ -260,33 +238,24 @@ impl Protocol {
             entries.iter().zip(roles).map(|(entry, role)| Row::new(entry, role)).collect();
 
         let digest = executor.render(&base).map_err(CompareError::Reference)?.digest;
-        let mut order: Vec<usize> = (0..rows.len()).collect();
-        let mut random = SplitMix64::new(self.seed);
-        let (mut rounds, mut last_round) = (0, Duration::ZERO);
-        let mut warm = false;
-        // Without its reference a round says nothing.
-        while rows[0].holds() && (!warm || self.wants_another(rounds, executor.elapsed() + last_round)) {
-            let begin = executor.elapsed();
-            if warm {
-                random.shuffle(&mut order);
+        let mut schedule = self.schedule(rows.len());
+        while let Some(turn) = schedule.next(executor.elapsed()) {
+            // Without its reference a round says nothing.
+            if turn.first && !rows[0].holds() {
+                break;
             }
-            for &index in &order {
-                let (row, entry) = (&mut rows[index], &entries[index]);
-                if !row.holds() {
-                    continue;
-                }
-                progress(Progress {
-                    strategy: row.strategy,
-                    threads: row.threads,
-                    rounds,
-                    fraction: self.fraction(rounds, executor.elapsed()),
-                });
-                let sample = row.verify(executor.render(entry), digest);
-                row.samples.extend(sample.filter(|_| warm));
+            let (row, entry) = (&mut rows[turn.entry], &entries[turn.entry]);
+            if !row.holds() {
+                continue;
             }
-            rounds += usize::from(warm);
-            warm = true;
-            last_round = executor.elapsed().saturating_sub(begin);
+            progress(Progress {
+                strategy: row.strategy,
+                threads: row.threads,
+                rounds: turn.round.unwrap_or(0),
+                fraction: turn.fraction,
+            });
+            let sample = row.verify(executor.render(entry), digest);
+            row.samples.extend(sample.filter(|_| turn.round.is_some()));
         }
 
         if rows[0].holds() {
@@ -295,18 +264,6 @@ impl Protocol {
                 row.figures = row.figures(&reference);
             }
         }
-        Ok(Comparison { rows, digest, rounds, seed: self.seed })
-    }
-
-    /// Whether to begin a round after `rounds` of them, if it would end at `end`.
-    fn wants_another(&self, rounds: usize, end: Duration) -> bool {
-        rounds < self.min_rounds.max(1) || (rounds < self.max_rounds && end <= self.budget)
-    }
-
-    /// How much is done, by rounds or by time, whichever is nearer to the end.
-    fn fraction(&self, rounds: usize, elapsed: Duration) -> f64 {
-        let of = |rounds: usize, all: usize| (rounds as f64 / all.max(1) as f64).min(1.0);
-        let time = elapsed.as_secs_f64() / self.budget.as_secs_f64().max(f64::MIN_POSITIVE);
-        of(rounds, self.min_rounds).min(time.min(1.0)).max(of(rounds, self.max_rounds))
+        Ok(Comparison { rows, digest, rounds: schedule.rounds(), seed: self.seed })
     }
 }

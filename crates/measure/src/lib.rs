@@ -17,12 +17,14 @@ pub mod machine;
 mod poison;
 pub mod random;
 pub mod recorder;
+pub mod schedule;
 pub mod statistics;
 pub mod stopwatch;
 
 pub use check::{Case, Check, Verdict};
-pub use compare::{Comparison, Entry, Protocol, Row};
+pub use compare::{Comparison, Entry, Row};
 pub use finding::{Fault, Finding};
 pub use machine::Machine;
+pub use schedule::Protocol;
 pub use statistics::Interval;
 pub use stopwatch::Stopwatch;
