@@ -7,6 +7,7 @@ use glam::DVec3;
 use rayweave_core::scene::{
     Camera, Cylinder, Light, MAX_SHININESS, Material, Plane, RenderSettings, Scene, Sphere, Triangle,
 };
+use rayweave_measure::random::SplitMix64;
 use std::ops::RangeInclusive;
 
 /// The scene of this number: always the same, and accepted by [`Scene::check`].
@@ -16,7 +17,7 @@ use std::ops::RangeInclusive;
 /// material: the first one is seen.
 #[must_use]
 pub fn random_scene(seed: u64) -> Scene {
-    let mut draw = Draw { state: seed };
+    let mut draw = Draw { random: SplitMix64::new(seed) };
     let materials = draw.several(1..=6, Draw::material);
     let count = materials.len();
     let mut scene = Scene {
@@ -67,18 +68,14 @@ pub fn random_scene(seed: u64) -> Scene {
     moved(&enlarged(&scene, scale), shift)
 }
 
-/// SplitMix64 (Steele, Lea and Flood, 2014) and what to make of its numbers.
+/// What to make of random numbers.
 struct Draw {
-    state: u64,
+    random: SplitMix64,
 }
 
 impl Draw {
     fn bits(&mut self) -> u64 {
-        self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.state;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+        self.random.next_u64()
     }
 
     /// In 0..1.

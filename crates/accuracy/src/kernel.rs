@@ -5,20 +5,72 @@ use crate::outcomes::Outcome;
 use glam::DVec3;
 use rayweave_core::scene::{Camera, Cylinder, Material, Plane, RenderSettings, Scene, Sphere, Triangle};
 use rayweave_core::{Arithmetic, Caster, Precision};
+use rayweave_measure::statistics::median;
+use std::hint::black_box;
+use std::time::Instant;
 
-/// What the kernel that renders answers to `case`. Input that means nothing, which no scene may
-/// contain, is a miss; so is every triangle without area.
+/// A case, ready to be asked again and again.
+pub struct Prepared {
+    /// `None` where the primitive means nothing: it hits nothing.
+    caster: Option<Caster>,
+    origin: DVec3,
+    direction: DVec3,
+    precision: Precision,
+}
+
+impl Prepared {
+    /// Of `case`. Input that means nothing, which no scene may contain, is a miss; so is every triangle
+    /// without area.
+    #[must_use]
+    pub fn new(case: &Case, arithmetic: Arithmetic) -> Self {
+        Self {
+            caster: Caster::new(&scene_of(&case.primitive), arithmetic).ok(),
+            origin: vector(case.ray.origin),
+            direction: vector(case.ray.direction),
+            precision: arithmetic.precision,
+        }
+    }
+
+    /// The `t` of the nearest hit that the kernel which renders finds, in its precision.
+    #[must_use]
+    pub fn hit(&self) -> Option<f64> {
+        let hit = self.caster.as_ref()?.nearest_hit(self.origin, self.direction)?;
+        Some(match self.precision {
+            Precision::F32 => f64::from(hit.t as f32),
+            Precision::F64 => hit.t,
+        })
+    }
+}
+
+/// What the kernel answers to `case`.
 #[must_use]
 pub fn outcome(case: &Case, arithmetic: Arithmetic) -> Outcome {
-    let scene = scene_of(&case.primitive);
-    let (origin, direction) = (vector(case.ray.origin), vector(case.ray.direction));
-    // A scene that is refused hits nothing.
-    let hit = Caster::new(&scene, arithmetic).ok().and_then(|caster| caster.nearest_hit(origin, direction));
-    let t = hit.map(|hit| match arithmetic.precision {
-        Precision::F32 => f64::from(hit.t as f32),
-        Precision::F64 => hit.t,
-    });
-    Outcome { id: case.id.clone(), hit: hit.is_some(), t }
+    let t = Prepared::new(case, arithmetic).hit();
+    Outcome { id: case.id.clone(), hit: t.is_some(), t }
+}
+
+/// Passes over the cases, of which the median counts.
+const PASSES: usize = 9;
+
+/// Rays a pass, at least: some tenths of a millisecond.
+const RAYS: usize = 4000;
+
+/// The time of a ray in nanoseconds, from origin and direction to the point and the normal of the hit,
+/// the call included; `None` without cases. The rays come one by one: a packet may be faster.
+#[must_use]
+pub fn nanoseconds_per_ray(cases: &[Prepared]) -> Option<f64> {
+    if cases.is_empty() {
+        return None;
+    }
+    let repeats = RAYS.div_ceil(cases.len());
+    let pass = || {
+        let begin = Instant::now();
+        for case in (0..repeats).flat_map(|_| cases) {
+            black_box(black_box(case).hit());
+        }
+        begin.elapsed().as_nanos() as f64 / (repeats * cases.len()) as f64
+    };
+    median(&std::iter::repeat_with(pass).take(PASSES).collect::<Vec<_>>())
 }
 
 /// A scene of nothing but `primitive`.

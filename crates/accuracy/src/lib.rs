@@ -1,5 +1,9 @@
-//! How right is a ray / primitive kernel: hard cases with exact answers, and the score of a kernel's
-//! answers. Prints nothing.
+//! How right is it: pictures against the truth, and single rays against exact answers. Prints nothing.
+//!
+//! * [`tradeoff`]: every setting of the tracer, its time and its error;
+//! * [`metrics`]: how far a picture is from another, and [`flip`], as one sees it.
+//!
+//! Hard cases of rays and primitives:
 //!
 //! * [`cases`]: the case format, JSON lines read and written;
 //! * [`oracle`]: the exact answer to a case, by rational arithmetic;
@@ -24,18 +28,22 @@
 pub mod cases;
 pub mod decimal;
 pub mod families;
+pub mod flip;
 pub mod goals;
 mod json_lines;
 pub mod kernel;
+pub mod metrics;
 pub mod oracle;
 pub mod outcomes;
 pub mod score;
+pub mod tradeoff;
 
 pub use cases::{Case, Expect, Primitive, Ray};
 pub use decimal::Decimal;
 pub use families::{FAMILIES, Family, generate};
 pub use goals::Tier;
 pub use json_lines::ReadError;
+pub use metrics::Difference;
 pub use oracle::{Answer, answer};
 pub use outcomes::Outcome;
 pub use score::{FamilyScore, score};

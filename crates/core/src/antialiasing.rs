@@ -34,9 +34,8 @@ pub(crate) struct Sample<S> {
 impl<S: Scalar> Filter<S> {
     pub(crate) fn new(settings: &RenderSettings) -> Self {
         match (settings.antialiasing, settings.sampling) {
-            (0, _) => Self::importance(1),
-            (density, Sampling::Lattice) => Self::lattice(density),
-            (density, Sampling::Importance) => Self::importance((2 * density + 1).pow(2)),
+            (density @ 1.., Sampling::Lattice) => Self::lattice(density),
+            _ => Self::importance(settings.rays_per_pixel()),
         }
     }
 
@@ -68,7 +67,8 @@ impl<S: Scalar> Filter<S> {
     /// `count` samples of equal weight, as dense as the filter is high (filter importance sampling:
     /// Ernst, Stamminger and Greiner, 2006): the points of a rank-1 lattice in the unit square
     /// (Dammertz and Keller, Image Synthesis by Rank-1 Lattices, 2008), each coordinate moved by the
-    /// inverse of the filter's distribution. No two share a row or a column, so an edge along an
+    /// inverse of the filter's distribution. For a sum of two neighbouring squares the best such lattice is
+    /// a square one, turned. No two share a row or a column, so an edge along an
     /// axis is resolved `count` fold, where a square lattice of as many samples resolves it by the
     /// square root of that.
     fn importance(count: u32) -> Self {
@@ -141,8 +141,7 @@ mod tests {
                 let sum: f64 = rows.map(|r| r.weight * r.samples.iter().map(|s| s.weight).sum::<f64>()).sum();
                 assert!((sum - 1.0).abs() < 1e-13, "{sampling:?} {antialiasing}: {sum}");
                 let count: usize = filter.rows().iter().map(|row| row.samples.len()).sum();
-                let expected = if antialiasing == 0 { 1 } else { (2 * antialiasing + 1).pow(2) as usize };
-                assert_eq!(count, expected);
+                assert_eq!(count, settings.rays_per_pixel() as usize, "{sampling:?} {antialiasing}");
             }
         }
     }
@@ -151,7 +150,7 @@ mod tests {
     /// a place outside of the filter.
     #[test]
     fn importance_samples_are_symmetric_and_in_rows_of_their_own() {
-        for count in [1, 9, 25, 49, 81, 169, 289, 1089] {
+        for count in [1, 5, 9, 13, 25, 41, 145, 289, 1089] {
             let mut places = importance(count);
             assert!(places.iter().all(|(x, y)| x.abs() < 1.0 && y.abs() < 1.0));
             for (x, y) in &places {
@@ -182,12 +181,16 @@ mod tests {
         assert!((found(|p| p.1) - moment).abs() < 1e-6, "{} in y, {moment} expected", found(|p| p.1));
     }
 
-    /// Catches a search that is content with less: of 25 points the best keep a squared distance of 25
-    /// (7 columns and 1 row, or 3 and 4).
+    /// Catches a search that is content with less: points of a square lattice, turned, whose squared
+    /// distance is their number.
     #[test]
     fn the_generator_keeps_points_apart() {
-        for (count, expected) in [(1, 1), (9, 2), (25, 7), (49, 9), (81, 31)] {
-            assert_eq!(rank1_generator(count), expected, "{count}");
+        for (count, expected) in [(1, 1), (5, 2), (13, 5), (25, 7), (41, 9), (145, 12)] {
+            let generator = rank1_generator(count);
+            assert_eq!(generator, expected, "{count}");
+            let square = |i: u32| (i * generator % count).min(count - i * generator % count).pow(2);
+            let nearest = (1..=count / 2).map(|i| i * i + square(i)).min();
+            assert!(nearest.is_none_or(|squared| squared == count), "{count}: {nearest:?}");
         }
     }
 }

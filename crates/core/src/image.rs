@@ -117,6 +117,13 @@ impl Image {
         ((index % width) as u32, (index / width) as u32)
     }
 
+    /// Each channel in 8 bits: `floor(255 clamp(c, 0, 1) + 0.5)`, without gamma; 0 for a NaN.
+    #[must_use]
+    pub fn to_rgb8(&self) -> Vec<u8> {
+        let byte = |channel: &f32| (255.0 * f64::from(*channel).clamp(0.0, 1.0) + 0.5).floor() as u8;
+        self.pixels.as_flattened().iter().map(byte).collect()
+    }
+
     /// Overwrites every pixel.
     pub fn fill(&mut self, color: Rgb) {
         self.pixels.fill(color);

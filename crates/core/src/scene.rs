@@ -51,7 +51,7 @@ pub struct RenderSettings {
     pub background: DVec3,
     /// Mirror bounces after the primary ray, 0..=64.
     pub max_reflections: u32,
-    /// Density `s`: 0 for one ray a pixel, else 1..=32 for `(2 s + 1)^2` samples a pixel.
+    /// Density `s`: 0 for one ray a pixel, else 1..=32; see [`Sampling`].
     pub antialiasing: u32,
     /// Where in and around a pixel these samples lie.
     pub sampling: Sampling,
@@ -61,10 +61,10 @@ pub struct RenderSettings {
 /// integral of the filter over the picture as their number grows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sampling {
-    /// On a square lattice, weighted by the filter: what a scene file means.
+    /// `(2 s + 1)^2` on a square lattice, weighted by the filter: what a scene file means.
     #[default]
     Lattice,
-    /// Of equal weight and as dense as the filter is high. As many rays, and less error.
+    /// `s^2 + (s + 1)^2` of equal weight, as dense as the filter is high. Half of the rays, less error.
     Importance,
 }
 
@@ -226,6 +226,16 @@ impl Camera {
 }
 
 impl RenderSettings {
+    /// Primary rays a pixel, when each pixel traces its own.
+    #[must_use]
+    pub fn rays_per_pixel(&self) -> u32 {
+        match (self.antialiasing, self.sampling) {
+            (0, _) => 1,
+            (density, Sampling::Lattice) => (2 * density + 1).pow(2),
+            (density, Sampling::Importance) => density.pow(2) + (density + 1).pow(2),
+        }
+    }
+
     /// Whether the settings are within the model's limits.
     ///
     /// # Errors

@@ -4,8 +4,16 @@ use crate::options::{PrecisionOption, SceneOptions};
 use rayweave_core::image::ImageError;
 use rayweave_core::precision::Demand;
 use rayweave_core::{Arithmetic, Image, Precision, Scene, Work, tracer};
-use rayweave_scene_file as scene_file;
+use rayweave_scene_file::{self as scene_file, SceneFile};
 use std::path::Path;
+
+/// The scene at `path`, or the report's, and what results call it.
+pub fn load(path: Option<&Path>) -> Result<(String, SceneFile), String> {
+    Ok(match path {
+        Some(path) => (path.display().to_string(), scene_file::load(path).map_err(|e| e.to_string())?),
+        None => ("report (built in)".to_owned(), scene_file::report_scene()),
+    })
+}
 
 /// A scene with the command line's overrides.
 pub struct Input {
@@ -24,13 +32,11 @@ pub struct Input {
 impl Input {
     /// Loads the scene at `path`, or takes the report's.
     pub fn load(path: Option<&Path>, options: &SceneOptions) -> Result<Self, String> {
-        let (name, file) = match path {
-            Some(path) => (path.display().to_string(), scene_file::load(path).map_err(|e| e.to_string())?),
-            None => ("report (built in)".to_owned(), scene_file::report_scene()),
-        };
+        let (name, file) = load(path)?;
         let mut scene = file.scene;
         let (width, height) = options.size.unwrap_or((file.image.width, file.image.height));
         scene.render.antialiasing = options.antialiasing.unwrap_or(scene.render.antialiasing);
+        scene.render.sampling = options.sampling.into();
         let demand = Demand::of(&scene);
         let (precision, reason) = match options.precision {
             PrecisionOption::Auto => (demand.precision(), demand.to_string()),

@@ -2,7 +2,7 @@
 
 use clap::{Args, ValueEnum};
 use rayweave_core::scene::MAX_ANTIALIASING;
-use rayweave_core::{Formulas, Strategy};
+use rayweave_core::{Formulas, Sampling, Strategy};
 use rayweave_registry::STRATEGIES;
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::thread::available_parallelism;
@@ -19,9 +19,12 @@ pub struct SceneOptions {
     /// Size of the picture in pixels, each 1..=65535 [default: the scene's]
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub size: Option<(u32, u32)>,
-    /// Lattice density: 0 for one ray a pixel, else N for (2 N + 1)^2 [default: the scene's]
+    /// Density: 0 for one ray a pixel, else N for (2 N + 1)^2 on the lattice [default: the scene's]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=i64::from(MAX_ANTIALIASING)))]
     pub antialiasing: Option<u32>,
+    /// Where the samples of a pixel lie
+    #[arg(long, value_enum, default_value_t)]
+    pub sampling: SamplingOption,
     /// Number type of the tracer
     #[arg(long, value_enum, default_value_t)]
     pub precision: PrecisionOption,
@@ -31,6 +34,16 @@ pub struct SceneOptions {
     /// Numbers computed side by side; this version computes them one by one
     #[arg(long, value_enum, default_value_t)]
     pub lanes: LanesOption,
+}
+
+/// Where the samples of a pixel lie.
+#[derive(Clone, Copy, Default, ValueEnum)]
+pub enum SamplingOption {
+    /// On a square lattice, weighted by the filter: what a scene file means
+    #[default]
+    Lattice,
+    /// Of equal weight and as dense as the filter is high: half of the rays, less error
+    Importance,
 }
 
 /// The number type of the tracer, or the wish to have it chosen.
@@ -83,6 +96,15 @@ impl From<FormulasOption> for Formulas {
     }
 }
 
+impl From<SamplingOption> for Sampling {
+    fn from(option: SamplingOption) -> Self {
+        match option {
+            SamplingOption::Lattice => Self::Lattice,
+            SamplingOption::Importance => Self::Importance,
+        }
+    }
+}
+
 impl TileOption {
     /// The side of a tile in a picture of this size.
     pub fn of(&self, width: u32, height: u32) -> Result<NonZeroU32, String> {
@@ -131,9 +153,16 @@ pub fn all_threads() -> NonZeroUsize {
     available_parallelism().unwrap_or(NonZeroUsize::MIN)
 }
 
-fn parse_size(text: &str) -> Result<(u32, u32), String> {
+/// A size of a picture, for clap.
+pub fn parse_size(text: &str) -> Result<(u32, u32), String> {
     let side = |text: &str| text.parse().ok().filter(|side| (1..=u32::from(u16::MAX)).contains(side));
     text.split_once('x')
         .and_then(|(width, height)| Some((side(width)?, side(height)?)))
         .ok_or_else(|| "expected WIDTHxHEIGHT, each an integer in 1..=65535, as in 640x480".to_owned())
+}
+
+/// A peak signal-to-noise ratio, for clap.
+pub fn parse_psnr(text: &str) -> Result<f64, String> {
+    let psnr = text.parse().ok().filter(|psnr| (0.0..=200.0).contains(psnr));
+    psnr.ok_or_else(|| "expected a number of decibels in 0..=200".to_owned())
 }

@@ -37,14 +37,14 @@ impl Format {
         let (width, height) = (picture.width(), picture.height());
         let result: ImageResult<()> = match self {
             Self::Png => PngEncoder::new(&mut file).write_image(
-                &bytes(picture),
+                &picture.to_rgb8(),
                 width,
                 height,
                 ExtendedColorType::Rgb8,
             ),
             Self::Ppm => PnmEncoder::new(&mut file)
                 .with_subtype(PnmSubtype::Pixmap(SampleEncoding::Binary))
-                .write_image(&bytes(picture), width, height, ExtendedColorType::Rgb8),
+                .write_image(&picture.to_rgb8(), width, height, ExtendedColorType::Rgb8),
             Self::Exr => {
                 // The encoder takes the floats as bytes in the machine's order.
                 let floats: Vec<u8> =
@@ -55,12 +55,6 @@ impl Format {
         result.map_err(|e| format!("the picture cannot be encoded: {e}"))?;
         Ok(file.into_inner())
     }
-}
-
-/// Each channel as `floor(255 clamp(c, 0, 1) + 0.5)`, without gamma.
-fn bytes(picture: &Image) -> Vec<u8> {
-    let byte = |channel: &f32| (255.0 * f64::from(*channel).clamp(0.0, 1.0) + 0.5).floor() as u8;
-    picture.pixels().as_flattened().iter().map(byte).collect()
 }
 
 #[cfg(test)]
@@ -76,7 +70,7 @@ mod tests {
 
     #[test]
     fn eight_bits_are_rounded_half_up_and_clamped() {
-        assert_eq!(bytes(&picture()), [128, 0, 255, 26, 0, 254]);
+        assert_eq!(picture().to_rgb8(), [128, 0, 255, 26, 0, 254]);
     }
 
     #[test]

@@ -28,6 +28,12 @@ impl<'a> Stopwatch<'a> {
     pub fn new(work: &'a dyn Work, width: u32, height: u32, tile: NonZeroU32) -> Result<Self, ImageError> {
         Ok(Self { work, tile, image: Image::new(width, height)?, begin: Instant::now() })
     }
+
+    /// The latest picture.
+    #[must_use]
+    pub fn into_picture(self) -> Image {
+        self.image
+    }
 }
 
 impl Executor for Stopwatch<'_> {

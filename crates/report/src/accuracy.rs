@@ -1,45 +1,41 @@
 //! How right a kernel's answers to hard cases are, for people.
 
+use crate::style;
 use rayweave_accuracy::FamilyScore;
-use std::fmt::Write as _;
 
-/// A row a family: errors in `f32` ulps of the true `t`; `max/cond` is the largest error over its
-/// condition number, which a stable formula keeps small.
+const HEADER: [&str; 9] =
+    ["family", "cases", "wrong", "(borderline)", "leaks", "p99\nulp", "max\nulp", "max\n/ cond", "ns\na ray"];
+
+/// A row a family: errors in `f32` ulps of the true `t`; `max / cond` is the largest error over its
+/// condition number, which a stable formula keeps small. `times` has each family's nanoseconds a ray.
 #[must_use]
-pub fn table(scores: &[FamilyScore]) -> String {
-    let mut text = format!(
-        "{:22} {:>6} {:>6} {:>11} {:>6} {:>9} {:>9} {:>9}\n",
-        "family", "cases", "wrong", "(borderline)", "leaks", "p99 ulp", "max ulp", "max/cond"
-    );
-    let figure = |value: Option<f64>| match value {
+pub fn table(scores: &[FamilyScore], times: &[Option<f64>]) -> String {
+    let error = |value: Option<f64>| match value {
         Some(value) if value < 1e4 => format!("{value:.3}"),
         Some(value) => format!("{value:.1e}"),
         None => "-".to_owned(),
     };
-    for score in scores {
-        // Writing to a string cannot fail.
-        let _ = writeln!(
-            text,
-            "{:22} {:>6} {:>6} {:>12} {:>6} {:>9} {:>9} {:>9}",
-            score.family,
-            score.cases,
-            score.wrong,
+    let rows = scores.iter().zip(times).map(|(score, time)| {
+        [
+            score.family.clone(),
+            score.cases.to_string(),
+            score.wrong.to_string(),
             format!("({})", score.wrong_borderline),
-            score.leaks,
-            figure(score.p99),
-            figure(score.max),
-            figure(score.max_by_condition)
-        );
-    }
+            score.leaks.to_string(),
+            error(score.p99),
+            error(score.max),
+            error(score.max_by_condition),
+            time.map_or_else(|| "-".to_owned(), |time| format!("{time:.0}")),
+        ]
+    });
+    let table = style::table(HEADER, rows, 1..=8);
     let sum = |of: fn(&FamilyScore) -> usize| scores.iter().map(of).sum::<usize>();
-    let _ = writeln!(
-        text,
-        "{} cases, {} decidable: {} wrong, {} leaks, {} not finite",
+    format!(
+        "{table}\n{} cases, {} decidable: {} wrong, {} leaks, {} not finite\n",
         sum(|s| s.cases),
         sum(|s| s.decidable),
         sum(|s| s.wrong),
         sum(|s| s.leaks),
         sum(|s| s.non_finite)
-    );
-    text
+    )
 }

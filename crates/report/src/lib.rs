@@ -1,11 +1,14 @@
-//! Results to terminal, JSON and CSV. Everything here returns text; nothing prints.
+//! Results to terminal, JSON, CSV and SVG. Everything here returns text; nothing prints.
 //!
 //! * [`compare::Report`]: the table of a comparison, and the same for other programs;
 //! * [`check`]: what a check found;
-//! * [`accuracy`]: how right a kernel's answers to hard cases are.
+//! * [`accuracy`]: how right a kernel's answers to hard cases are;
+//! * [`tradeoff::Report`]: speed against error, as a table, a plot, and for other programs.
 
 pub mod accuracy;
 pub mod check;
 pub mod compare;
 mod json;
 pub mod machine;
+mod style;
+pub mod tradeoff;

@@ -1,12 +1,12 @@
 //! Random numbers, vectors and rays, the same on every machine.
 
-use glam::{DVec2, DVec3};
-
 use crate::cases::Ray;
+use glam::{DVec2, DVec3};
+use rayweave_measure::random::SplitMix64;
 
-/// `SplitMix64` of Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014.
+/// Draws from a stream of random numbers.
 pub(super) struct Draw {
-    state: u64,
+    random: SplitMix64,
 }
 
 impl Draw {
@@ -15,19 +15,15 @@ impl Draw {
         let name = family.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
             (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
         });
-        let mut draw = Self { state: seed };
+        let mut random = SplitMix64::new(seed);
         for part in [name, index as u64] {
-            draw.state = draw.bits() ^ part;
+            random = SplitMix64::new(random.next_u64() ^ part);
         }
-        draw
+        Self { random }
     }
 
     fn bits(&mut self) -> u64 {
-        self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut bits = self.state;
-        bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        bits ^ (bits >> 31)
+        self.random.next_u64()
     }
 
     /// Evenly in `low..high`.

@@ -4,7 +4,8 @@ use crate::options::FormulasOption;
 use crate::output::PendingFile;
 use crate::{Outcome, print};
 use clap::{Args, ValueEnum};
-use rayweave_accuracy::{cases, kernel, outcomes, score};
+use rayweave_accuracy::kernel::{self, Prepared};
+use rayweave_accuracy::{Case, cases, outcomes, score};
 use rayweave_core::{Arithmetic, Precision};
 use std::fs::File;
 use std::io::{self, BufReader, Write};
@@ -50,7 +51,9 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let mut lines = Vec::new();
     outcomes::write(&mut lines, &found).map_err(|e| format!("the results cannot be written: {e}"))?;
     let scores = score(&cases, &found);
-    let table = rayweave_report::accuracy::table(&scores);
+    let times: Vec<Option<f64>> =
+        scores.iter().map(|score| time(&cases, &score.family, arithmetic)).collect();
+    let table = rayweave_report::accuracy::table(&scores, &times);
     match out {
         Some(file) => {
             file.finish(&lines)?;
@@ -64,4 +67,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     }
     let wrong = scores.iter().any(|score| score.wrong > 0 || score.leaks > 0 || score.non_finite > 0);
     Ok(if wrong { Outcome::Failed } else { Outcome::Held })
+}
+
+/// Nanoseconds a ray of a family's cases.
+fn time(cases: &[Case], family: &str, arithmetic: Arithmetic) -> Option<f64> {
+    let cases = cases.iter().filter(|case| case.family == family);
+    kernel::nanoseconds_per_ray(&cases.map(|case| Prepared::new(case, arithmetic)).collect::<Vec<_>>())
 }

@@ -2,6 +2,7 @@
 
 pub mod check;
 pub mod compare;
+pub mod error;
 pub mod intersect;
 pub mod render;
 pub mod strategies;

@@ -1,8 +1,7 @@
 //! The comparison for people.
 
 use super::Report;
-use crate::machine;
-use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
+use crate::{machine, style};
 use rayweave_core::ThreadsStart;
 use rayweave_measure::compare::{Role, Row};
 use rayweave_measure::{Comparison, Interval};
@@ -21,14 +20,13 @@ const HEADER: [&str; 8] = [
 /// The columns of numbers, which line up at their right.
 const NUMBERS: std::ops::RangeInclusive<usize> = 1..=5;
 
-const STYLE: TableStyle = TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'));
-
 /// What a cell without a figure holds.
 const NONE: &str = "-";
 
 pub(super) fn text(report: &Report<'_>) -> String {
     let Report { comparison, .. } = report;
-    let mut lines = vec![heading(report), String::new(), table(comparison), String::new()];
+    let table = style::table(HEADER, comparison.rows.iter().map(cells), NUMBERS);
+    let mut lines = vec![heading(report), String::new(), table, String::new()];
     lines.extend(comparison.rows.iter().filter_map(complaint));
     lines.extend(notes(comparison));
     lines.push(machine::text(report.machine));
@@ -50,20 +48,6 @@ fn heading(Report { subject, comparison, .. }: &Report<'_>) -> String {
         comparison.rounds,
         comparison.digest.short()
     )
-}
-
-fn table(comparison: &Comparison) -> String {
-    let mut table = Table::new();
-    // Neither colours nor a wrapping that depends on the window: a result reads the same everywhere.
-    table.force_no_tty().load_style(STYLE).set_content_arrangement(ContentArrangement::Disabled);
-    table.set_header(HEADER).add_rows(comparison.rows.iter().map(cells));
-    for (index, column) in table.column_iter_mut().enumerate() {
-        column.set_padding((0, 1));
-        if NUMBERS.contains(&index) {
-            column.set_cell_alignment(CellAlignment::Right);
-        }
-    }
-    table.trim_fmt()
 }
 
 fn cells(row: &Row) -> [String; HEADER.len()] {

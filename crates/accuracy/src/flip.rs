@@ -1,0 +1,35 @@
+//! FLIP (Andersson, Nilsson, Akenine-Moller et al., "FLIP: A Difference Evaluator for Alternating
+//! Images", 2020): what a person sees who flips between two pictures, by the authors' own program.
+
+use nv_flip::{DEFAULT_PIXELS_PER_DEGREE, FlipImageFloat, FlipImageRgb8, magma_lut};
+use rayweave_core::Image;
+
+/// From 0, no difference to be seen, to 1 for each pixel, at the distance the authors suggest. The
+/// pictures are compared as they look in an 8-bit file, which is shown as sRGB.
+pub(crate) fn map(truth: &Image, found: &Image) -> FlipImageFloat {
+    nv_flip::flip(shown(truth), shown(found), DEFAULT_PIXELS_PER_DEGREE)
+}
+
+pub(crate) fn mean(map: &FlipImageFloat) -> f64 {
+    let pixels = map.to_vec();
+    pixels.iter().copied().map(f64::from).sum::<f64>() / pixels.len() as f64
+}
+
+/// The difference as a picture: black where there is none, then violet and orange to white.
+///
+/// # Panics
+///
+/// If the pictures differ in size.
+#[must_use]
+pub fn picture(truth: &Image, found: &Image) -> Image {
+    let colors = map(truth, found).apply_color_lut(&magma_lut()).to_vec();
+    let mut picture = truth.clone();
+    for (pixel, color) in picture.pixels_mut().iter_mut().zip(colors.chunks_exact(3)) {
+        *pixel = [0, 1, 2].map(|c| f32::from(color[c]) / 255.0);
+    }
+    picture
+}
+
+fn shown(image: &Image) -> FlipImageRgb8 {
+    FlipImageRgb8::with_data(image.width(), image.height(), &image.to_rgb8())
+}

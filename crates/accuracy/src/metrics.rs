@@ -1,0 +1,112 @@
+//! How far a picture is from another, as one would see it: both are clamped to 0..=1 first, in linear
+//! light, as an 8-bit file would do. What a channel has above 1 or below 0 does not count.
+
+use crate::flip;
+use rayweave_core::Image;
+
+/// The error of a picture. A channel that is NaN is off by 1, all there is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Difference {
+    /// The root of the mean square over all channels.
+    pub rmse: f64,
+    /// The largest of a channel.
+    pub max: f64,
+    /// The share of pixels, 0..=1, with a channel that is off by more than 1/255.
+    pub share_off: f64,
+    /// The mean of FLIP over the pixels, 0..=1: what a person sees who flips between the two.
+    pub flip: f64,
+}
+
+impl Difference {
+    /// Between the truth and what was found.
+    ///
+    /// # Panics
+    ///
+    /// If the pictures differ in size.
+    #[must_use]
+    pub fn between(truth: &Image, found: &Image) -> Self {
+        let size = |image: &Image| (image.width(), image.height());
+        assert_eq!(size(truth), size(found), "the pictures differ in size");
+        let pairs = || truth.pixels().iter().zip(found.pixels());
+        let channels = || pairs().flat_map(|(a, b)| (0..3).map(|c| error(a[c], b[c])));
+        let off = |(a, b): &(&[f32; 3], &[f32; 3])| (0..3).any(|c| error(a[c], b[c]) > 1.0 / 255.0);
+        let count = truth.pixels().len() as f64;
+        Self {
+            rmse: (channels().map(|error| error * error).sum::<f64>() / (3.0 * count)).sqrt(),
+            max: channels().fold(0.0, f64::max),
+            share_off: pairs().filter(off).count() as f64 / count,
+            flip: flip::mean(&flip::map(truth, found)),
+        }
+    }
+
+    /// Peak signal-to-noise ratio in dB for a peak of 1: infinite for equal pictures.
+    #[must_use]
+    pub fn psnr(&self) -> f64 {
+        psnr(self.rmse)
+    }
+}
+
+/// The peak signal-to-noise ratio in dB that belongs to a root mean square error, for a peak of 1.
+#[must_use]
+pub fn psnr(rmse: f64) -> f64 {
+    -20.0 * rmse.log10()
+}
+
+fn error(truth: f32, found: f32) -> f64 {
+    let error = (f64::from(truth).clamp(0.0, 1.0) - f64::from(found).clamp(0.0, 1.0)).abs();
+    if error.is_nan() { 1.0 } else { error }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn picture(pixels: [[f32; 3]; 2]) -> Image {
+        let mut image = Image::new(2, 1).expect("two pixels");
+        image.pixels_mut().copy_from_slice(&pixels);
+        image
+    }
+
+    fn between(truth: [[f32; 3]; 2], found: [[f32; 3]; 2]) -> Difference {
+        Difference::between(&picture(truth), &picture(found))
+    }
+
+    const GREY: [f32; 3] = [0.5, 0.25, 1.0];
+
+    #[test]
+    fn equal_pictures() {
+        let difference = between([GREY, [0.0; 3]], [GREY, [0.0; 3]]);
+        assert_eq!(difference, Difference { rmse: 0.0, max: 0.0, share_off: 0.0, flip: 0.0 });
+        assert_eq!(difference.psnr(), f64::INFINITY);
+    }
+
+    /// Catches a mean over pixels instead of channels, and a largest or a share of another.
+    #[test]
+    fn a_known_error() {
+        // One channel of six off by 1/2: the mean square is 1/24.
+        let difference = between([[0.0; 3]; 2], [[0.5, 0.0, 0.0], [0.0; 3]]);
+        assert!((difference.psnr() - 10.0 * 24f64.log10()).abs() < 1e-12);
+        assert_eq!((difference.max, difference.share_off), (0.5, 0.5));
+        assert!(difference.flip > 0.1);
+    }
+
+    #[test]
+    fn one_step_of_a_byte_is_not_off() {
+        let step = |steps: f32| [steps / 255.0, 0.0, 0.0];
+        assert_eq!(between([step(0.0); 2], [step(1.0), step(1.01)]).share_off, 0.5);
+    }
+
+    #[test]
+    fn what_is_beyond_the_range_does_not_count() {
+        let difference = between([[1.5, -2.0, 1.0], [1.0; 3]], [[7.0, -1.0, 1.0], [f32::INFINITY; 3]]);
+        assert_eq!((difference.rmse, difference.flip), (0.0, 0.0));
+    }
+
+    /// Catches a NaN that passes for black, or makes the whole figure NaN.
+    #[test]
+    fn nan_is_all_there_is() {
+        let difference = between([[0.0; 3]; 2], [[f32::NAN, 0.0, 0.0], [0.0; 3]]);
+        assert_eq!((difference.max, difference.share_off), (1.0, 0.5));
+        assert!((difference.rmse - (1.0 / 6.0_f64).sqrt()).abs() < 1e-12);
+    }
+}

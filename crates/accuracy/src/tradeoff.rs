@@ -1,0 +1,227 @@
+//! Speed against error: every setting of the tracer timed and held against the truth, in one
+//! interleaved run on one thread.
+
+mod cost;
+mod front;
+mod reference;
+mod setting;
+
+pub use cost::Cost;
+pub use front::pareto_front;
+pub use reference::{RAYS_PER_PIXEL, Reference};
+pub use setting::{ARITHMETICS, Setting};
+
+use crate::metrics::Difference;
+use cost::Parts;
+use rayweave_core::{Arithmetic, Digest, Image, Scene, Strategy, Work, tracer};
+use rayweave_measure::compare::{Entry, Executor};
+use rayweave_measure::statistics::{median, median_interval};
+use rayweave_measure::{Interval, Protocol, Stopwatch};
+use setting::EXACT;
+use std::num::{NonZeroU32, NonZeroUsize};
+use std::time::Instant;
+
+/// What is studied, and how.
+pub struct Experiment<'a> {
+    /// The scene, whose own sampling and anti-aliasing are of no consequence.
+    pub scene: &'a Scene,
+    /// Width and height of the pictures in pixels.
+    pub size: (u32, u32),
+    /// Renders what is timed, on the caller's thread.
+    pub strategy: &'a dyn Strategy,
+    /// How long to measure.
+    pub protocol: Protocol,
+}
+
+/// What was found.
+#[derive(Debug)]
+pub struct Study {
+    /// The truth.
+    pub reference: Reference,
+    /// A row a setting.
+    pub rows: Vec<Row>,
+    /// What the arithmetics cost, on the whole scene and on each kind of primitive in it.
+    pub costs: Vec<Cost>,
+    /// Rounds measured.
+    pub rounds: usize,
+    /// Whether every timed picture was the first of its setting, bit for bit.
+    pub repeatable: bool,
+}
+
+/// A setting, measured.
+#[derive(Debug)]
+pub struct Row {
+    /// The setting.
+    pub setting: Setting,
+    /// Times to render, one a round, in nanoseconds.
+    pub samples_ns: Vec<u64>,
+    /// Their median.
+    pub median_ns: f64,
+    /// The time of the lab report's own setting over this one's, within a round.
+    pub speedup: Interval,
+    /// From the truth.
+    pub error: Difference,
+    /// Of that, what rounding did: root mean square from the same rays in the most exact arithmetic.
+    pub arithmetic_rmse: f64,
+    /// Of that, what too few rays did: the same with the scene's bounces and the most exact arithmetic.
+    pub sampling_rmse: f64,
+    /// Whether no other setting is faster and as exact, or more exact and as fast.
+    pub in_front: bool,
+}
+
+impl Study {
+    /// The row of the lab report's own setting.
+    ///
+    /// # Panics
+    ///
+    /// Never: it is among the settings of every scene.
+    #[must_use]
+    pub fn report_row(&self) -> &Row {
+        let deepest = self.rows[0].setting.max_reflections;
+        let is_report = |row: &&Row| row.setting == Setting::report(deepest);
+        self.rows.iter().find(is_report).expect("among the settings")
+    }
+
+    /// The fastest setting whose PSNR is `psnr` dB or more.
+    #[must_use]
+    pub fn fastest_with(&self, psnr: f64) -> Option<&Row> {
+        fastest(self.rows.iter().filter(|row| row.error.psnr() >= psnr))
+    }
+
+    /// The same among those that differ from the lab report's own in their density alone.
+    #[must_use]
+    pub fn fastest_report_like(&self, psnr: f64) -> Option<&Row> {
+        let own = self.report_row().setting;
+        let like = |row: &&Row| Setting { antialiasing: own.antialiasing, ..row.setting } == own;
+        fastest(self.rows.iter().filter(like).filter(|row| row.error.psnr() >= psnr))
+    }
+}
+
+fn fastest<'a>(rows: impl Iterator<Item = &'a Row>) -> Option<&'a Row> {
+    rows.min_by(|a, b| a.median_ns.total_cmp(&b.median_ns))
+}
+
+/// One of the pictures that are timed.
+struct Subject {
+    scene: Scene,
+    arithmetic: Arithmetic,
+    digest: Option<Digest>,
+    samples_ns: Vec<u64>,
+}
+
+impl Experiment<'_> {
+    /// Renders the truth, then measures every setting in interleaved rounds. The warm-up gives the
+    /// errors, the rounds the times. `render` gives the picture of a work, untimed; `progress` is told
+    /// what share is done, between the timed spans.
+    ///
+    /// # Errors
+    ///
+    /// A scene that is not sound, a picture that cannot be, and whatever the strategy says.
+    pub fn run(
+        &self,
+        render: impl FnMut(&dyn Work) -> Result<Image, String>,
+        mut progress: impl FnMut(f64),
+    ) -> Result<Study, String> {
+        let begin = Instant::now();
+        let reference = Reference::new(self.scene, self.size, render)?;
+        let settings = Setting::all(self.scene);
+        let parts = Parts::of(self.scene);
+        let mut subjects: Vec<Subject> =
+            settings.iter().map(|s| Subject::new(s.applied_to(self.scene), s.arithmetic)).collect();
+        subjects.extend(parts.subjects());
+
+        let mut errors: Vec<Errors> = Vec::new();
+        let mut exact = None;
+        let mut repeatable = true;
+        let mut schedule = self.protocol.schedule(subjects.len());
+        while let Some(turn) = schedule.next(begin.elapsed()) {
+            progress(turn.fraction);
+            let subject = &mut subjects[turn.entry];
+            let (picture, digest, nanoseconds) = self.render(subject)?;
+            if turn.round.is_some() {
+                subject.samples_ns.push(nanoseconds);
+                repeatable &= subject.digest == Some(digest);
+                continue;
+            }
+            subject.digest = Some(digest);
+            if turn.entry < settings.len() {
+                // Of settings that differ in the arithmetic the most exact one comes first.
+                if subject.arithmetic == EXACT {
+                    exact = Some(picture.clone());
+                }
+                let exact = exact.as_ref().unwrap_or(&picture);
+                errors.push(Errors {
+                    all: Difference::between(&reference.picture, &picture),
+                    arithmetic: Difference::between(exact, &picture).rmse,
+                });
+            }
+        }
+        let times: Vec<&[u64]> = subjects.iter().map(|subject| &subject.samples_ns[..]).collect();
+        let costs = parts.costs(&settings, &times);
+        Ok(Study {
+            reference,
+            rows: rows(&settings, &times, &errors),
+            costs,
+            rounds: schedule.rounds(),
+            repeatable,
+        })
+    }
+
+    fn render(&self, subject: &Subject) -> Result<(Image, Digest, u64), String> {
+        let (width, height) = self.size;
+        let work = tracer(&subject.scene, width, height, subject.arithmetic).map_err(|e| e.to_string())?;
+        let mut stopwatch =
+            Stopwatch::new(&*work, width, height, NonZeroU32::MAX).map_err(|e| e.to_string())?;
+        let rendering = stopwatch.render(&Entry { strategy: self.strategy, threads: NonZeroUsize::MIN })?;
+        Ok((stopwatch.into_picture(), rendering.digest, rendering.sample.render_ns))
+    }
+}
+
+impl Subject {
+    fn new(scene: Scene, arithmetic: Arithmetic) -> Self {
+        Self { scene, arithmetic, digest: None, samples_ns: Vec::new() }
+    }
+}
+
+/// How far a setting's picture is off.
+struct Errors {
+    all: Difference,
+    arithmetic: f64,
+}
+
+fn rows(settings: &[Setting], times: &[&[u64]], errors: &[Errors]) -> Vec<Row> {
+    let place = |wanted: Setting| settings.iter().position(|s| *s == wanted).expect("among the settings");
+    let deepest = settings[0].max_reflections;
+    let report = times[place(Setting::report(deepest))];
+    let medians: Vec<f64> = times.iter().take(settings.len()).map(|times| median_ns(times)).collect();
+    // To the tenth of a decibel: less is no reason to call one better.
+    let decibels = |errors: &Errors| -(10.0 * errors.all.psnr()).round();
+    let points: Vec<(f64, f64)> = medians.iter().zip(errors).map(|(&t, e)| (t, decibels(e))).collect();
+    let front = pareto_front(&points);
+    let row = |(i, setting): (usize, &Setting)| {
+        let unlimited = place(Setting { arithmetic: EXACT, max_reflections: deepest, ..*setting });
+        Row {
+            setting: *setting,
+            samples_ns: times[i].to_vec(),
+            median_ns: medians[i],
+            speedup: ratio(report, times[i]),
+            error: errors[i].all,
+            arithmetic_rmse: errors[i].arithmetic,
+            sampling_rmse: errors[unlimited].all.rmse,
+            in_front: front[i],
+        }
+    };
+    settings.iter().enumerate().map(row).collect()
+}
+
+fn median_ns(samples: &[u64]) -> f64 {
+    median(&samples.iter().map(|&ns| ns as f64).collect::<Vec<_>>()).unwrap_or(f64::NAN)
+}
+
+/// The median of `above` over `below` within a round, with its interval.
+fn ratio(above: &[u64], below: &[u64]) -> Interval {
+    // A clock too coarse for the rendering must not make a ratio of 0 / 0.
+    let ratios = above.iter().zip(below).map(|(&a, &b)| a.max(1) as f64 / b.max(1) as f64);
+    let none = Interval { median: f64::NAN, low: f64::NAN, high: f64::NAN };
+    median_interval(&ratios.collect::<Vec<_>>()).unwrap_or(none)
+}

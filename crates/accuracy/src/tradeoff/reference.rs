@@ -1,0 +1,54 @@
+//! The picture that the others are measured against: the limit of the filter, nearly.
+
+use super::setting::EXACT;
+use crate::metrics::Difference;
+use rayweave_core::{Image, Sampling, Scene, Work, tracer};
+
+/// The truth, and how true it is.
+#[derive(Clone, Debug)]
+pub struct Reference {
+    /// In robust `f64`, some 7,700 rays a pixel.
+    pub picture: Image,
+    /// An estimate of the picture's root mean square error: half of the difference between its halves,
+    /// each with half of the rays in other places. Errors that the two have in common do not show.
+    pub uncertainty: f64,
+}
+
+/// Densities of the two halves, nearly equal: four patterns of samples that have nothing in common.
+const HALVES: [[u32; 2]; 2] = [[32, 29], [31, 30]];
+
+/// Primary rays a pixel in a reference picture.
+pub const RAYS_PER_PIXEL: u32 = 32 * 32 + 33 * 33 + 29 * 29 + 30 * 30 + 31 * 31 + 32 * 32 + 30 * 30 + 31 * 31;
+
+impl Reference {
+    /// Of `scene` with all its bounces. `render` gives the picture of a work.
+    ///
+    /// # Errors
+    ///
+    /// Those of `render`, and a scene that is not sound.
+    pub fn new(
+        scene: &Scene,
+        (width, height): (u32, u32),
+        mut render: impl FnMut(&dyn Work) -> Result<Image, String>,
+    ) -> Result<Self, String> {
+        let mut picture = |density| {
+            let mut scene = scene.clone();
+            scene.render.sampling = Sampling::Importance;
+            scene.render.antialiasing = density;
+            render(&*tracer(&scene, width, height, EXACT).map_err(|e| e.to_string())?)
+        };
+        let mut half = |[a, b]: [u32; 2]| Ok::<Image, String>(mean(&picture(a)?, &picture(b)?));
+        let (first, second) = (half(HALVES[0])?, half(HALVES[1])?);
+        let uncertainty = Difference::between(&first, &second).rmse / 2.0;
+        Ok(Self { picture: mean(&first, &second), uncertainty })
+    }
+}
+
+fn mean(a: &Image, b: &Image) -> Image {
+    let mut mean = a.clone();
+    let channels = mean.pixels_mut().as_flattened_mut().iter_mut();
+    for (channel, other) in channels.zip(b.pixels().as_flattened()) {
+        *channel = f32::midpoint(*channel, *other);
+    }
+    mean
+}

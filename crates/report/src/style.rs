@@ -1,0 +1,25 @@
+//! How tables look.
+
+use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
+use std::ops::RangeInclusive;
+
+const STYLE: TableStyle = TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'));
+
+/// A table without a newline at the end; the columns `numbers` line up at their right.
+pub(crate) fn table<const N: usize>(
+    header: [&str; N],
+    rows: impl Iterator<Item = [String; N]>,
+    numbers: RangeInclusive<usize>,
+) -> String {
+    let mut table = Table::new();
+    // Neither colours nor a wrapping that depends on the window: a result reads the same everywhere.
+    table.force_no_tty().load_style(STYLE).set_content_arrangement(ContentArrangement::Disabled);
+    table.set_header(header).add_rows(rows);
+    for (index, column) in table.column_iter_mut().enumerate() {
+        column.set_padding((0, 1));
+        if numbers.contains(&index) {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    table.trim_fmt()
+}

@@ -1,0 +1,145 @@
+//! The study for people.
+
+use super::{Report, sampling_name};
+use crate::{machine, style};
+use rayweave_accuracy::metrics::psnr;
+use rayweave_accuracy::tradeoff::{Cost, RAYS_PER_PIXEL, Row};
+use rayweave_measure::Interval;
+
+const HEADER: [&str; 14] = [
+    "",
+    "formulas",
+    "",
+    "sampling",
+    "rays a\npixel",
+    "bounces",
+    "ms",
+    "times as fast\nas the report",
+    "PSNR\ndB",
+    "largest\nerror",
+    "off by\n> 1/255",
+    "FLIP",
+    "arithmetic\ndB",
+    "sampling\ndB",
+];
+
+/// The columns of numbers.
+const NUMBERS: std::ops::RangeInclusive<usize> = 4..=13;
+
+const COST_HEADER: [&str; 4] =
+    ["cost", "robust / textbook\nin f32", "robust / textbook\nin f64", "f64 / f32\nrobust"];
+
+pub(super) fn text(report: &Report<'_>) -> String {
+    let study = report.study;
+    let mut rows: Vec<&Row> = study.rows.iter().collect();
+    rows.sort_by(|a, b| a.median_ns.total_cmp(&b.median_ns));
+    let front = report.front();
+    [
+        heading(report),
+        style::table(HEADER, rows.into_iter().map(cells), NUMBERS),
+        notes(report),
+        "The Pareto front: the most exact setting for its time. All others are dominated.".to_owned(),
+        style::table(HEADER, front.into_iter().map(cells), NUMBERS),
+        choice(report),
+        style::table(COST_HEADER, study.costs.iter().map(cost_cells), 1..=3),
+        machine::text(report.machine),
+    ]
+    .join("\n\n")
+}
+
+fn heading(report: &Report<'_>) -> String {
+    let Report { scene, width, height, study, .. } = report;
+    format!(
+        "{scene}, {width} x {height} pixels, one thread; {} settings in {} interleaved rounds",
+        study.rows.len(),
+        study.rounds
+    )
+}
+
+fn cells(row: &Row) -> [String; HEADER.len()] {
+    let Row { setting, speedup, error, .. } = row;
+    [
+        if row.in_front { "*" } else { "" }.to_owned(),
+        setting.arithmetic.formulas.to_string(),
+        setting.arithmetic.precision.to_string(),
+        sampling_name(setting).to_owned(),
+        setting.rays_per_pixel().to_string(),
+        setting.max_reflections.to_string(),
+        milliseconds(row.median_ns),
+        interval(*speedup),
+        decibels(error.psnr()),
+        format!("{:.3}", error.max),
+        format!("{:.1} %", 100.0 * error.share_off),
+        format!("{:.4}", error.flip),
+        decibels(psnr(row.arithmetic_rmse)),
+        decibels(psnr(row.sampling_rmse)),
+    ]
+}
+
+fn cost_cells(cost: &Cost) -> [String; COST_HEADER.len()] {
+    [cost.part.to_owned(), interval(cost.robust_f32), interval(cost.robust_f64), interval(cost.f64_robust)]
+}
+
+fn notes(report: &Report<'_>) -> String {
+    let study = report.study;
+    let truth = psnr(study.reference.uncertainty);
+    let finite = |row: &Row| row.error.rmse.is_finite();
+    let best = study.rows.iter().filter(|row| finite(row)).map(|row| row.error.rmse).fold(1.0, f64::min);
+    let share = study.reference.uncertainty / best;
+    let verdict =
+        if share <= 0.1 { "which is enough for all of them" } else { "too much to tell the very best apart" };
+    let repeatable = if study.repeatable {
+        "Every timed picture was verified."
+    } else {
+        "A TIMED PICTURE CHANGED FROM ONE ROUND TO ANOTHER."
+    };
+    format!(
+        "*: on the Pareto front. PSNR and what follows: against robust f64 with {RAYS_PER_PIXEL} rays a pixel,\n\
+         whose own error is about {} dB, {share:.2} of the smallest one here: {verdict}.\n\
+         arithmetic: against the same rays in robust f64. sampling: what is left in robust f64 with all bounces.\n\
+         Edges make most of the error, and a picture twice as large has half as many of them a pixel: its PSNR\n\
+         is some 3 dB higher. {repeatable}",
+        decibels(truth)
+    )
+}
+
+fn choice(report: &Report<'_>) -> String {
+    let (study, target) = (report.study, report.target_psnr);
+    let own = study.report_row();
+    let own_psnr = decibels(own.error.psnr());
+    let Some(row) = study.fastest_with(target) else {
+        return format!("No setting reaches {target} dB here; the report's own has {own_psnr} dB.");
+    };
+    let plain = study.fastest_report_like(target).map_or_else(
+        || "With its formulas and lattice nothing here does.".to_owned(),
+        |plain| {
+            format!(
+                "With its formulas and lattice it takes {} rays a pixel: {:.2} times as long.",
+                plain.setting.rays_per_pixel(),
+                plain.median_ns / row.median_ns
+            )
+        },
+    );
+    format!(
+        "For {target} dB choose {}: {} dB in {} ms, {} times as fast as the report's own setting,\n\
+         which has {own_psnr} dB. {plain}",
+        row.setting,
+        decibels(row.error.psnr()),
+        milliseconds(row.median_ns),
+        interval(row.speedup)
+    )
+}
+
+fn milliseconds(nanoseconds: f64) -> String {
+    let milliseconds = nanoseconds / 1e6;
+    let digits = if milliseconds < 10.0 { 2 } else { usize::from(milliseconds < 100.0) };
+    format!("{milliseconds:.digits$}")
+}
+
+fn interval(Interval { median, low, high }: Interval) -> String {
+    format!("{median:.2} [{low:.2}, {high:.2}]")
+}
+
+fn decibels(psnr: f64) -> String {
+    if psnr.is_infinite() { "exact".to_owned() } else { format!("{psnr:.1}") }
+}
