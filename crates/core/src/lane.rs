@@ -196,9 +196,17 @@ pub(crate) fn sign_of_difference<L: Lane>(a: L, b: L, c: L, d: L) -> L {
 
 /// `a b - product`, exactly, for a `product` that is the rounded one.
 #[inline(never)]
-fn product_error<L: Lane>(a: L, b: L, product: L) -> L {
+pub(crate) fn product_error<L: Lane>(a: L, b: L, product: L) -> L {
     let ((ah, al), (bh, bl)) = (split(a), split(b));
     al * bl - (((product - ah * bh) - al * bh) - ah * bl)
+}
+
+/// `a + b - sum`, exactly, for a `sum` that is the rounded one (Knuth, The Art of Computer Programming 2,
+/// 1969).
+#[inline(always)]
+pub(crate) fn sum_error<L: Lane>(a: L, b: L, sum: L) -> L {
+    let b_part = sum - a;
+    (a - (sum - b_part)) + (b - b_part)
 }
 
 /// The upper and the lower half of the digits of `x`.

@@ -1,6 +1,6 @@
 //! Vectors of three numbers, each of them a [`Lane`].
 
-use crate::lane::{Lane, Scalar};
+use crate::lane::{Lane, Scalar, product_error, sum_error};
 use glam::DVec3;
 use std::ops::{Add, Mul, Neg, Sub};
 
@@ -32,6 +32,19 @@ impl<L: Lane> Vector<L> {
     #[inline(always)]
     pub(crate) fn dot(self, other: Self) -> L {
         self.x * other.x + self.y * other.y + self.z * other.z
+    }
+
+    /// The dot product as if computed in twice the digits and then rounded: Dot2 of Ogita, Rump and Oishi
+    /// (Accurate Sum and Dot Product, 2005). Where its intermediate numbers overflow, the plain one.
+    #[inline(always)]
+    pub(crate) fn accurate_dot(self, other: Self) -> L {
+        let product = |a: L, b: L| (a * b, product_error(a, b, a * b));
+        let ((x, x_error), (y, y_error), (z, z_error)) =
+            (product(self.x, other.x), product(self.y, other.y), product(self.z, other.z));
+        let xy = x + y;
+        let sum = xy + z;
+        let error = (sum_error(x, y, xy) + sum_error(xy, z, sum)) + (x_error + y_error + z_error);
+        L::select(error.abs().lt(L::literal(f64::INFINITY)), sum + error, sum)
     }
 
     #[inline(always)]

@@ -8,13 +8,16 @@ use crate::lane::Lane;
 /// squared radius less that point's squared distance (Hearn and Baker; Haines, Gunther,
 /// Akenine-Moller, Ray Tracing Gems, 2019, ch. 7), which does not cancel for far and grazing
 /// spheres as `b^2 - 4ac` does; `power` is the origin's squared distance from the centre less the
-/// squared radius. The root of greater magnitude is a sum without cancellation, the other follows
-/// from the product of the roots (Press et al., Numerical Recipes, 5.6).
+/// squared radius. The root of greater magnitude is a sum without cancellation. So is the other one as
+/// a difference of numbers that are far apart; else it follows from the product of the roots (Press et
+/// al., Numerical Recipes, 5.6), which takes more roundings.
 #[inline(always)]
 pub(crate) fn roots<L: Lane>(closest: L, discriminant: L, power: L, inverse_square: L) -> (L, L) {
     let half_chord = (discriminant * inverse_square).sqrt();
     let forward = L::literal(0.0).le(closest);
     let greater = closest + L::select(forward, half_chord, -half_chord);
-    let lesser = power * inverse_square / greater;
+    let difference = closest - L::select(forward, half_chord, -half_chord);
+    let apart = (L::literal(8.0) * half_chord).lt(closest.abs());
+    let lesser = L::select(apart, difference, power * inverse_square / greater);
     (L::select(forward, lesser, greater), L::select(forward, greater, lesser))
 }

@@ -82,8 +82,9 @@ impl<S: Scalar> Triangle<S> {
 
     /// The edge test of Woop, Benthin and Wald (Watertight Ray/Triangle Intersection, JCGT 2013):
     /// signs of 2 x 2 determinants of projected corners, which are the same from both sides of a
-    /// shared edge. `t` is that of the plane, differences first; where the ray grazes the plane that
-    /// is mostly noise, so it is kept between those of the corners.
+    /// shared edge. `t` is that of the plane, differences first, its sums in twice the digits, since few
+    /// rays come that far; where the ray grazes the plane it is mostly noise all the same, so it is kept
+    /// between those of the corners.
     #[inline(always)]
     pub(crate) fn intersect<L: Lane<Scalar = S>, const AXIS: usize>(
         &self,
@@ -102,8 +103,8 @@ impl<S: Scalar> Triangle<S> {
             return miss();
         }
         let normal = Vector::splat(self.normal);
-        let slope = normal.dot(ray.direction);
-        let t = normal.dot(Vector::splat(self.vertices[0]) - ray.origin) / slope;
+        let slope = normal.accurate_dot(ray.direction);
+        let t = normal.accurate_dot(Vector::splat(self.vertices[0]) - ray.origin) / slope;
         let (lowest, highest) = (a[2].min(b[2]).min(c[2]), a[2].max(b[2]).max(c[2]));
         let (from, to) = (lowest / aim.along, highest / aim.along);
         let t = t.max(from.min(to)).min(from.max(to));
