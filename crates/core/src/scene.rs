@@ -64,7 +64,8 @@ pub enum Sampling {
     /// `(2 s + 1)^2` on a square lattice, weighted by the filter: what a scene file means.
     #[default]
     Lattice,
-    /// `s^2 + (s + 1)^2` of equal weight, as dense as the filter is high. Half of the rays, less error.
+    /// `s^2 + (s + 1)^2` of equal weight, as dense as the filter is high: half of the
+    /// lattice's rays for about the same error.
     Importance,
 }
 

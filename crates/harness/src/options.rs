@@ -42,7 +42,7 @@ pub enum SamplingOption {
     /// On a square lattice, weighted by the filter: what a scene file means
     #[default]
     Lattice,
-    /// Of equal weight and as dense as the filter is high: half of the rays, less error
+    /// Of equal weight and as dense as the filter is high: half of the rays for the same error
     Importance,
 }
 

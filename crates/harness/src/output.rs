@@ -41,6 +41,18 @@ impl PendingFile {
     }
 }
 
+/// Whether no two of the files that are asked for are the same.
+pub fn distinct_files(paths: &[&Option<PathBuf>]) -> Result<(), String> {
+    let mut seen: Vec<&Path> = Vec::new();
+    for path in paths.iter().filter_map(|path| path.as_deref()) {
+        if seen.contains(&path) {
+            return Err(format!("{}: two results cannot be written to the same file", path.display()));
+        }
+        seen.push(path);
+    }
+    Ok(())
+}
+
 fn cannot<T>(path: &Path, reason: &str) -> Result<T, String> {
     Err(format!("{}: cannot be written: {reason}", path.display()))
 }

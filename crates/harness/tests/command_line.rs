@@ -1,69 +1,12 @@
 //! The command line as its users meet it: the program is run, and what it prints, writes and
 //! returns is looked at.
 
+mod program;
+
+use program::{Run, files_in, folder, json, rayweave, repository, scene};
 use serde_json::Value;
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-use tempfile::TempDir;
-
-/// A run of the program in a folder of its own, with the repository's scenes in reach.
-struct Run {
-    status: i32,
-    stdout: String,
-    stderr: String,
-}
-
-fn rayweave(folder: &Path, arguments: &str) -> Run {
-    let output = Command::new(env!("CARGO_BIN_EXE_rayweave"))
-        .args(arguments.split_whitespace())
-        .current_dir(folder)
-        .output()
-        .expect("the program starts");
-    Run::of(output)
-}
-
-impl Run {
-    fn of(output: Output) -> Self {
-        Self {
-            status: output.status.code().expect("the program ends by itself"),
-            stdout: String::from_utf8(output.stdout).expect("text"),
-            stderr: String::from_utf8(output.stderr).expect("text"),
-        }
-    }
-
-    fn expect_success(self) -> String {
-        assert_eq!((self.status, self.stderr.as_str()), (0, ""), "{}", self.stdout);
-        self.stdout
-    }
-
-    /// Status 2, nothing but an error on standard error; returns that.
-    fn expect_refusal(self) -> String {
-        assert_eq!((self.status, self.stdout.as_str()), (2, ""), "{}", self.stderr);
-        assert!(self.stderr.starts_with("error: "), "{}", self.stderr);
-        self.stderr
-    }
-}
-
-fn folder() -> TempDir {
-    TempDir::new().expect("a temporary folder")
-}
-
-fn repository() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
-
-fn scene(name: &str) -> String {
-    repository().join("scenes").join(name).display().to_string()
-}
-
-fn files_in(folder: &Path) -> Vec<String> {
-    let entries = fs::read_dir(folder).expect("a folder");
-    let mut names: Vec<String> =
-        entries.map(|e| e.expect("an entry").file_name().into_string().expect("text")).collect();
-    names.sort();
-    names
-}
+use std::process::Command;
 
 #[test]
 fn strategies_lists_the_registry_in_its_order() {
@@ -153,10 +96,6 @@ fn check_holds_and_says_so() {
     assert_eq!(json["holds"], true);
     assert!(json["findings"].as_array().expect("a list").is_empty());
     assert!(json["compared"].as_u64().expect("a number") > 0);
-}
-
-fn json(path: &Path) -> Value {
-    serde_json::from_slice(&fs::read(path).expect("the file")).expect("JSON")
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use crate::input::Input;
 use crate::options::{SceneOptions, TileOption, all_threads, distinct, parse_strategy, parse_threads};
-use crate::output::PendingFile;
+use crate::output::{PendingFile, distinct_files};
 use crate::{Outcome, print, progress};
 use clap::Args;
 use rayweave_core::Strategy;
@@ -44,9 +44,7 @@ pub struct Options {
 }
 
 pub fn run(scene: Option<&Path>, options: &Options) -> Result<Outcome, String> {
-    if options.json.is_some() && options.json == options.csv {
-        return Err("--json and --csv name the same file".to_owned());
-    }
+    distinct_files(&[&options.json, &options.csv])?;
     let json = options.json.as_deref().map(PendingFile::create).transpose()?;
     let csv = options.csv.as_deref().map(PendingFile::create).transpose()?;
     let input = Input::load(scene, &options.scene_options)?;

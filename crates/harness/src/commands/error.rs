@@ -2,7 +2,7 @@
 
 use crate::input;
 use crate::options::{all_threads, parse_psnr, parse_size};
-use crate::output::PendingFile;
+use crate::output::{PendingFile, distinct_files};
 use crate::picture::Format;
 use crate::{Outcome, print, progress};
 use clap::Args;
@@ -57,6 +57,7 @@ const STEPS: f64 = 1000.0;
 
 pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let files = [&arguments.json, &arguments.csv, &arguments.svg];
+    distinct_files(&files)?;
     let [json, csv, svg] = files.map(|path| path.as_deref().map(PendingFile::create).transpose());
     let (json, csv, svg) = (json?, csv?, svg?);
     if let Some(folder) = &arguments.pictures {
