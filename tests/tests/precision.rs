@@ -1,8 +1,8 @@
 //! Which precision a scene is given, and that it is enough.
 
 use glam::DVec3;
-use rayweave_core::precision::{Demand, F32_RATIO};
-use rayweave_core::scene::{Cylinder, Plane, Sphere, Triangle};
+use rayweave_core::precision::{Demand, F32_DISPLACEMENT, F32_MIRRORS};
+use rayweave_core::scene::{Cylinder, Material, Plane, Sphere, Triangle};
 use rayweave_core::{Precision, Scene};
 use rayweave_tests::transform::{enlarged, moved};
 use rayweave_tests::{errata, metrics, model, picture, scenes};
@@ -34,64 +34,125 @@ fn on_a_globe(radius: f64) -> Scene {
     scene
 }
 
+/// Seen through a lens that shows a picture as wide as it is far away.
+fn through_a_lens(focal_length: f64, mut scene: Scene) -> Scene {
+    scene.camera.focal_length = focal_length;
+    scene.camera.screen_width = 1.0;
+    scene
+}
+
+/// The report's scene from as far as this, through a lens that brings it as near as ever.
+fn from_afar(distance: f64) -> Scene {
+    let mut scene = scenes::named("hard/telephoto");
+    let camera = &mut scene.camera;
+    camera.position = camera.look_at + distance * (camera.position - camera.look_at).normalize();
+    camera.focal_length = distance;
+    scene
+}
+
 // The rule
 
 /// Catches a kind that does not count, a coordinate left out or taken with its sign, a radius
-/// forgotten in the extent.
+/// forgotten in the extent, a distance to the wrong point of a thing.
 #[test]
 fn every_kind_makes_its_demand() {
     let plane = |point| Plane { point: DVec3::from_array(point), normal: 9.0 * DVec3::Y, material: 0 };
     let tall = Cylinder {
-        bottom: DVec3::new(1.0, -40.0, -2.0),
-        top: DVec3::new(1.0, 3.0, -2.0),
+        bottom: DVec3::new(3.0, -40.0, -4.0),
+        top: DVec3::new(3.0, 3.0, -4.0),
         radius: 0.25,
         material: 0,
     };
-    let vertices = [[1.0, 0.0, 0.0], [4.0, 4.0, 0.0], [1.0, 0.0, -1.0]].map(DVec3::from_array);
+    let low = Cylinder { bottom: DVec3::new(0.0, 2.0, 0.0), top: DVec3::new(0.0, 3.0, 0.0), ..tall };
+    let corners = |y: f64| [[-3.0, y, -4.0], [6.0, y, -4.0], [-3.0, y, 4.0]].map(DVec3::from_array);
+    let triangle = |vertices| Triangle { vertices, material: 0 };
+    let aside = corners(0.0).map(|corner| corner + DVec3::new(6.0, 0.0, 0.0));
     let mut eye = empty();
     eye.camera.position = DVec3::new(3.0, -7.0, 5.0);
+    let of_planes = |planes| Scene { planes, ..empty() };
+    let of_triangle = |vertices| Scene { triangles: vec![triangle(vertices)], ..empty() };
+    let of_cylinder = |cylinder| Scene { cylinders: vec![cylinder], ..empty() };
+    // What is expected: 24 of what is across, one of what is along, four of the distance; the
+    // distance; the smallest number that is squared; the largest number.
     let cases = [
-        ("nothing", empty(), 0.0, f64::INFINITY),
-        ("the eye", eye, 7.0, f64::INFINITY),
-        ("a plane", Scene { planes: vec![plane([1.0, 2.0, -8.0])], ..empty() }, 8.0, f64::INFINITY),
-        ("a sphere", ball([-5.0, 2.0, 3.0], 0.5), 5.5, 0.5),
-        // The longest edge, of 5.1.
+        ("nothing", empty(), 4.0, 1.0, f64::INFINITY, 1.0),
+        ("the eye", eye.clone(), 4.0, 1.0, 7.0, 7.0),
+        ("a plane", of_planes(vec![plane([100.0, 2.0, -8.0])]), 24.0 * 2.0 + 8.0, 2.0, 100.0, 100.0),
+        ("a sphere", ball([-3.0, 0.0, 4.0], 0.5), 24.0 * 4.0 + 4.5 + 18.0, 4.5, 0.5, 4.5),
+        ("a sphere around the eye", ball([-3.0, 0.0, 4.0], 7.0), 24.0 * 7.0 + 11.0 + 8.0, 2.0, 7.0, 11.0),
+        // Below its middle, the eye's height counts; beside it, the distance to a corner.
+        ("a triangle", of_triangle(corners(-2.0)), 24.0 * 2.0 + 6.0 + 8.0, 2.0, 6.0, 6.0),
+        ("a triangle aside", of_triangle(aside), 12.0 + 12.0, 3.0, 12.0, 12.0),
+        ("a cylinder", of_cylinder(tall), 24.0 * 4.0 + 40.25 + 19.0, 4.75, 0.25, 40.25),
         (
-            "a triangle",
-            Scene { triangles: vec![Triangle { vertices, material: 0 }], ..empty() },
-            4.0,
-            26f64.sqrt(),
-        ),
-        ("a cylinder", Scene { cylinders: vec![tall], ..empty() }, 40.25, 0.25),
-        (
-            "the extremes of two",
-            Scene { planes: vec![plane([0.0, -90.0, 0.0])], cylinders: vec![tall], ..empty() },
-            90.0,
+            "a cylinder above",
+            of_cylinder(low),
+            24.0 * 0.25 + 3.25 + 4.0 * 65f64.sqrt() / 4.0,
+            65f64.sqrt() / 4.0,
             0.25,
+            3.25,
+        ),
+        (
+            "an eye far from the origin",
+            Scene { camera: eye.camera, ..ball([3.0, -7.0, 1.0], 1.0) },
+            24.0 * 7.0 + 8.0 + 12.0,
+            3.0,
+            1.0,
+            8.0,
+        ),
+        (
+            "the worst of two",
+            Scene { cylinders: vec![tall], ..of_planes(vec![plane([0.0, -90.0, 0.0])]) },
+            24.0 * 4.0 + 40.25 + 19.0,
+            4.75,
+            0.25,
+            90.0,
         ),
     ];
-    for (what, scene, largest, smallest) in cases {
-        assert_eq!(Demand::of(&scene), Demand { largest, smallest, extreme: largest.max(1.0) }, "{what}");
+    for (what, scene, roundings, distance, least, extreme) in cases {
+        for focal_length in [1.0, 64.0] {
+            let found = Demand::of(&through_a_lens(focal_length, scene.clone()));
+            let displacement = focal_length * roundings / distance / 2f64.powi(24);
+            assert!(
+                (found.displacement / displacement - 1.0).abs() < 1e-12,
+                "{what}: {found:?}, not {displacement}"
+            );
+            assert_eq!((found.least, found.extreme), (least, extreme), "{what}");
+        }
     }
 }
 
-/// Catches a bound that is off, or on the wrong side: the largest ratio that `f32` is good for.
+/// Catches a bound that is off, or on the wrong side.
 #[test]
-fn the_ratio_decides() {
-    for scale in [1.0, 3.0, 1e-5, 1e5] {
-        let demand = |ratio: f64| {
-            let largest = ratio * scale;
-            Demand { largest, smallest: scale, extreme: largest.max(1.0) }
-        };
-        assert_eq!(demand(F32_RATIO).precision(), Precision::F32);
-        assert_eq!(demand(F32_RATIO * (1.0 + 1e-15)).precision(), Precision::F64);
-    }
-    assert_eq!(chosen(&ball([F32_RATIO - 1.0, 0.0, 0.0], 1.0)), Precision::F32);
-    assert_eq!(chosen(&ball([1.0 - F32_RATIO, 0.0, 0.0], 1.0)), Precision::F32);
-    assert_eq!(chosen(&ball([F32_RATIO, 0.0, 0.0], 1.0)), Precision::F64);
-    // Planes have no size: no coordinate is too large for them.
+fn the_displacement_and_the_mirrors_decide() {
+    let demand = |displacement, mirrors| Demand { displacement, mirrors, least: 1.0, extreme: 1.0 };
+    let more = 1.0 + 1e-15;
+    assert_eq!(demand(F32_DISPLACEMENT, F32_MIRRORS).precision(), Precision::F32);
+    assert_eq!(demand(F32_DISPLACEMENT * more, 0.0).precision(), Precision::F64);
+    assert_eq!(demand(0.0, F32_MIRRORS * more).precision(), Precision::F64);
+    // Planes without anything beside them have no outline: no coordinate is too large for them.
     let floor = Plane { point: -1e8 * DVec3::Y, normal: DVec3::Y, material: 0 };
     assert_eq!(chosen(&Scene { planes: vec![floor], ..empty() }), Precision::F32);
+}
+
+/// Catches a flat mirror that counts, a curved one that does not, the wrong one of several.
+#[test]
+fn curved_mirrors_take_digits() {
+    let mirrors = |reflections: [f64; 4]| {
+        let mut scene = scenes::named("report");
+        scene.materials.truncate(1);
+        scene.materials = reflections.map(|reflection| Material { reflection, ..scene.materials[0] }).into();
+        scene.planes.iter_mut().for_each(|plane| plane.material = 0);
+        scene.spheres.iter_mut().for_each(|sphere| sphere.material = 1);
+        scene.triangles.iter_mut().for_each(|triangle| triangle.material = 2);
+        scene.cylinders.iter_mut().for_each(|cylinder| cylinder.material = 3);
+        scene.render.max_reflections = 5;
+        Demand::of(&scene).mirrors
+    };
+    assert_eq!(mirrors([1.0, 0.0, 1.0, 0.0]), 0.0);
+    assert_eq!(mirrors([0.0, 0.125, 0.0, 0.0625]), 0.0);
+    assert_eq!(mirrors([0.0, 0.5, 0.0, 0.25]), 10.0);
+    assert_eq!(mirrors([0.0, 0.5, 0.0, 1.0]), 15.0);
 }
 
 /// Catches numbers whose squares overflow or vanish in `f32`.
@@ -131,15 +192,17 @@ fn lights_and_materials_count_by_their_range() {
     }
 }
 
-/// Catches a rule that asks too much.
+/// Catches a rule that asks too much, or too little of mirrors.
 #[test]
-fn the_repository_s_scenes_choose_f32() {
+fn of_the_repository_s_scenes_only_the_chaotic_one_chooses_f64() {
     for name in scenes::NAMES {
-        assert_eq!(chosen(&scenes::named(name)), Precision::F32, "{name}");
+        let expected = if name == "imbalance" { Precision::F64 } else { Precision::F32 };
+        assert_eq!(chosen(&scenes::named(name)), expected, "{name}");
     }
 }
 
-/// Catches a bound on the coordinates themselves where their ratio is meant, and the reverse.
+/// Catches a bound on the coordinates themselves where they are compared with what is seen, and the
+/// reverse.
 #[test]
 fn what_is_far_or_large_beside_the_small_chooses_f64() {
     let report = scenes::named("report");
@@ -150,11 +213,29 @@ fn what_is_far_or_large_beside_the_small_chooses_f64() {
         for offset in [1e5 * axis, -1e5 * axis] {
             assert_eq!(chosen(&moved(&report, offset)), Precision::F64, "{offset}");
         }
+        assert_eq!(chosen(&moved(&report, 100.0 * axis)), Precision::F32, "{axis}");
     }
-    assert_eq!(chosen(&on_a_globe(1e6)), Precision::F64);
+    assert_eq!(chosen(&on_a_globe(1e4)), Precision::F64);
     assert_eq!(chosen(&on_a_globe(100.0)), Precision::F32);
+    assert_eq!(chosen(&from_afar(1e4)), Precision::F64);
+    assert_eq!(chosen(&from_afar(1e3)), Precision::F32);
     for scale in [1e12, 1e30, 1e-12, 1e-30] {
         assert_eq!(chosen(&enlarged(&report, scale)), Precision::F64, "{scale:e}");
+    }
+}
+
+/// Catches a reason that does not name what decides, or is not a number.
+#[test]
+fn the_reason_is_one_line_about_what_decides() {
+    let report = scenes::named("report");
+    for (scene, word) in [
+        (&report, "of the picture's width"),
+        (&moved(&report, DVec3::splat(1e5)), "of the picture's width"),
+        (&scenes::named("imbalance"), "mirrors"),
+        (&enlarged(&report, 1e30), "numbers from"),
+    ] {
+        let reason = Demand::of(scene).to_string();
+        assert!(reason.contains(word) && !reason.contains('\n') && reason.len() < 80, "{reason}");
     }
 }
 
@@ -202,6 +283,9 @@ fn the_chosen_precision_is_enough() {
     for radius in [100.0, 1e4, 1e6] {
         assert_enough(&format!("on a globe of {radius}"), &on_a_globe(radius));
     }
+    for distance in [10.0, 100.0, 1e3, 1e4, 1e5, 1e6] {
+        assert_enough(&format!("from {distance} away"), &from_afar(distance));
+    }
 }
 
 /// Catches a rule that chooses `f64` for nothing: these are wrong in `f32`.
@@ -211,6 +295,7 @@ fn f64_is_chosen_for_a_reason() {
     for (what, scene) in [
         ("far", moved(&report, DVec3::splat(1e5))),
         ("on a globe", on_a_globe(1e6)),
+        ("from afar", from_afar(1e6)),
         ("vast", enlarged(&report, 1e25)),
         ("minute", enlarged(&report, 1e-25)),
     ] {

@@ -47,7 +47,9 @@ impl Family for Textbook {
         })
     }
 
-    /// The plane, then on which side of each edge the point lies: three cross products.
+    /// The plane, then on which side of each edge the point lies: three cross products. The point is off
+    /// by some `4u` of its coordinates and `t |d|`, differently for each triangle: an edge that two share
+    /// may belong to neither.
     #[inline(always)]
     fn triangles<L: Lane>(
         triangles: &[Triangle<L::Scalar>],
@@ -113,7 +115,8 @@ fn plane_root<L: Lane>(point: Vector<L>, normal: Vector<L>, ray: &Ray<L>) -> L {
     normal.dot(point - ray.origin) / normal.dot(ray.direction)
 }
 
-/// The smaller of the roots of `a t^2 + b t + c` that counts. A ray along a cylinder's axis has
+/// The smaller of the roots of `a t^2 + b t + c` that counts. The discriminant cancels: its error is about
+/// `8u b^2`, whatever is left of it, and so may be all of the root. A ray along a cylinder's axis has
 /// `a = 0`, and NaN or infinities for roots.
 #[inline(always)]
 fn first_root<L: Lane>(a: L, b: L, c: L, counts: impl Fn(L) -> L::Mask) -> L {

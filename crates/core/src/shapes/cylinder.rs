@@ -43,7 +43,8 @@ impl<S: Scalar> Cylinder<S> {
         }
     }
 
-    /// Both roots are tried: the far wall is seen through the open end.
+    /// The smaller of the [roots](quadric::roots) above 0 that are on the wall: both are tried, because the
+    /// far wall is seen through the open end. The discriminant's error is the sphere's, in x and z.
     #[inline(always)]
     pub(crate) fn intersect<L: Lane<Scalar = S>>(&self, ray: &Ray<L>, aim: &Aim<L>) -> L {
         let zero = L::literal(0.0);
