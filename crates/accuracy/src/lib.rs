@@ -10,7 +10,8 @@
 //! * [`families`]: seeded generators of 36 families of hard cases, with their answers;
 //! * [`kernel`]: what the tracer's own answers;
 //! * [`outcomes`]: what a kernel answered, one JSON line a case;
-//! * [`mod@score`]: verdicts, errors in ulps and leaks a family, and [`goals`] for them.
+//! * [`mod@score`]: verdicts, errors in ulps and leaks a family, and [`goals`] for them;
+//! * [`promise`]: what holds for any ray and primitive, for fuzzing.
 //!
 //! What is right:
 //!
@@ -35,6 +36,7 @@ pub mod kernel;
 pub mod metrics;
 pub mod oracle;
 pub mod outcomes;
+pub mod promise;
 pub mod score;
 pub mod tradeoff;
 

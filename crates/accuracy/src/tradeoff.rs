@@ -9,7 +9,7 @@ mod setting;
 pub use cost::Cost;
 pub use front::pareto_front;
 pub use reference::{RAYS_PER_PIXEL, Reference};
-pub use setting::{ARITHMETICS, Setting};
+pub use setting::{ARITHMETICS, EXACT, Setting};
 
 use crate::metrics::Difference;
 use cost::Parts;
@@ -17,7 +17,6 @@ use rayweave_core::{Arithmetic, Digest, Image, Scene, Strategy, Work, tracer};
 use rayweave_measure::compare::{Entry, Executor};
 use rayweave_measure::statistics::{median, median_interval};
 use rayweave_measure::{Interval, Protocol, Stopwatch};
-use setting::EXACT;
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::time::Instant;
 

@@ -7,13 +7,14 @@ use crate::picture::Format;
 use crate::{Outcome, print, progress};
 use clap::Args;
 use rayweave_accuracy::flip;
-use rayweave_accuracy::tradeoff::{Experiment, Study};
+use rayweave_accuracy::tradeoff::{EXACT, Experiment, Setting, Study};
 use rayweave_core::{Image, Plan, Scene, Work, tracer};
-use rayweave_measure::{Machine, Protocol};
+use rayweave_measure::compare::{Entry, Executor};
+use rayweave_measure::{Machine, Protocol, Stopwatch};
 use rayweave_report::tradeoff::Report;
 use rayweave_scene_file::ImageSize;
 use std::fs;
-use std::num::NonZeroU32;
+use std::num::{NonZeroU32, NonZeroUsize};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -21,7 +22,8 @@ use std::time::Duration;
 pub struct Arguments {
     /// Scene file [default: the report's scene, built in]
     scene: Option<PathBuf>,
-    /// Size of the pictures in pixels, each 1..=65535 [default: the scene's shape in 4096 pixels]
+    /// Size of the pictures in pixels, each 1..=65535 [default: the scene's shape in 3600 pixels, or
+    /// fewer if it takes long]
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     size: Option<(u32, u32)>,
     /// Name the fastest setting with this PSNR or more
@@ -42,8 +44,11 @@ pub struct Arguments {
     pictures: Option<PathBuf>,
 }
 
-/// As many as let all settings be measured six times in a minute or so.
-const PIXELS: f64 = 4096.0;
+/// Pixels of a picture, at most, unless a size is asked for.
+const PIXELS: f64 = 3600.0;
+
+/// The longest that a round may take, as estimated: six of them, and the warm-up, in under two minutes.
+const ROUND: Duration = Duration::from_secs(12);
 
 /// Six rounds, for a 95 % interval, and no more of them than fit into a minute.
 const PROTOCOL: Protocol =
@@ -64,7 +69,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
         fs::create_dir_all(folder).map_err(|e| format!("{}: cannot be made: {e}", folder.display()))?;
     }
     let (name, file) = input::load(arguments.scene.as_deref())?;
-    let (scene, size) = (file.scene, arguments.size.unwrap_or_else(|| shrunk(file.image)));
+    let scene = file.scene;
+    let size = arguments.size.map_or_else(|| default_size(&scene, file.image), Ok)?;
 
     let bar = progress::bar(STEPS as u64);
     bar.set_message("reference");
@@ -98,10 +104,28 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     Ok(if study.repeatable { Outcome::Held } else { Outcome::Failed })
 }
 
-/// The scene's shape in [`PIXELS`] pixels or a few less.
-fn shrunk(image: ImageSize) -> (u32, u32) {
+/// The scene's shape in [`PIXELS`] pixels, or in a half, a quarter ... of them if all settings would take
+/// too long.
+fn default_size(scene: &Scene, image: ImageSize) -> Result<(u32, u32), String> {
+    let mut pixels = PIXELS;
+    let pilot = shrunk(image, PIXELS / 4.0);
+    let setting = Setting { arithmetic: EXACT, ..Setting::report(scene.render.max_reflections) };
+    let work = tracer(&setting.applied_to(scene), pilot.0, pilot.1, EXACT).map_err(|e| e.to_string())?;
+    let mut stopwatch = Stopwatch::new(&*work, pilot.0, pilot.1, TILE).map_err(|e| e.to_string())?;
+    let entry = Entry { strategy: rayweave_registry::reference(), threads: NonZeroUsize::MIN };
+    let nanoseconds = stopwatch.render(&entry)?.sample.render_ns as f64;
+    let per_ray = nanoseconds / (f64::from(pilot.0 * pilot.1 * setting.rays_per_pixel()));
+    let rays: u32 = Setting::all(scene).iter().map(Setting::rays_per_pixel).sum();
+    while pixels > 1.0 && pixels * f64::from(rays) * per_ray > ROUND.as_nanos() as f64 {
+        pixels /= 2.0;
+    }
+    Ok(shrunk(image, pixels))
+}
+
+/// The shape of `image` in `pixels` pixels, or a few less.
+fn shrunk(image: ImageSize, pixels: f64) -> (u32, u32) {
     let (width, height) = (f64::from(image.width), f64::from(image.height));
-    let scale = (PIXELS / (width * height)).sqrt().min(1.0);
+    let scale = (pixels / (width * height)).sqrt().min(1.0);
     let side = |side: f64| ((side * scale).floor() as u32).max(1);
     (side(width), side(height))
 }
