@@ -2,6 +2,8 @@
 
 /// The places where the report that this project starts from is wrong, each with a witness.
 pub mod errata;
+/// Closed meshes.
+pub mod meshes;
 /// How far a picture is from the truth.
 pub mod metrics;
 /// The truth: the image model in wide arithmetic, slow and plain.

@@ -6,6 +6,7 @@
 //! adds to a [`Fault`] where in the file it stands.
 
 use glam::DVec3;
+use std::fmt;
 use thiserror::Error;
 
 /// A whole scene: everything that decides the picture, except its size in pixels.
@@ -67,6 +68,15 @@ pub enum Sampling {
     /// `s^2 + (s + 1)^2` of equal weight, as dense as the filter is high: half of the
     /// lattice's rays for about the same error.
     Importance,
+}
+
+impl fmt::Display for Sampling {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Lattice => "lattice",
+            Self::Importance => "importance",
+        })
+    }
 }
 
 impl Default for RenderSettings {
@@ -355,7 +365,7 @@ fn expect(
     key: &'static str,
     holds: bool,
     expected: &'static str,
-    found: impl std::fmt::Display,
+    found: impl fmt::Display,
 ) -> Result<(), Fault> {
     if holds { Ok(()) } else { Err(Fault { key, expected, found: found.to_string() }) }
 }

@@ -3,6 +3,7 @@
 use crate::options::{PrecisionOption, SceneOptions};
 use rayweave_core::image::ImageError;
 use rayweave_core::precision::Demand;
+use rayweave_core::scene::RenderSettings;
 use rayweave_core::{Arithmetic, Image, Precision, Scene, Work, tracer};
 use rayweave_scene_file::{self as scene_file, SceneFile};
 use std::path::Path;
@@ -60,8 +61,9 @@ impl Input {
     /// What is rendered, and how: two lines.
     pub fn describe(&self) -> String {
         let Self { name, width, height, .. } = self;
-        let antialiasing = self.scene.render.antialiasing;
-        format!("{name}, {width} x {height} pixels, antialiasing {antialiasing}\n{}", self.arithmetic_line())
+        let RenderSettings { antialiasing, sampling, .. } = self.scene.render;
+        let arithmetic = self.arithmetic_line();
+        format!("{name}, {width} x {height} pixels, antialiasing {antialiasing} by {sampling}\n{arithmetic}")
     }
 
     /// Formulas, precision and its reason.

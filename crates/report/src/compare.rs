@@ -6,7 +6,7 @@ mod table;
 #[cfg(test)]
 mod tests;
 
-use rayweave_core::ThreadsStart;
+use rayweave_core::{Formulas, Sampling, ThreadsStart};
 use rayweave_measure::{Comparison, Machine, Row};
 
 /// What was rendered.
@@ -20,8 +20,12 @@ pub struct Subject {
     pub height: u32,
     /// The side of a tile, in pixels.
     pub tile: u32,
-    /// Density of the lattice of samples; 0 is one ray a pixel.
+    /// Density of the samples; 0 is one ray a pixel.
     pub antialiasing: u32,
+    /// Where the samples lie.
+    pub sampling: Sampling,
+    /// Of the tracer.
+    pub formulas: Formulas,
     /// Of the numbers that the tracer computes with: "f32" or "f64".
     pub precision: String,
 }

@@ -5,7 +5,6 @@ mod plot;
 mod table;
 
 use rayweave_accuracy::tradeoff::{Row, Setting, Study};
-use rayweave_core::Sampling;
 use rayweave_measure::Machine;
 
 /// A study with everything that is needed to read it.
@@ -62,11 +61,7 @@ impl Report<'_> {
     }
 }
 
-/// The word for where a setting's samples lie; none for one ray a pixel.
-fn sampling_name(setting: &Setting) -> &'static str {
-    match (setting.antialiasing, setting.sampling) {
-        (0, _) => "-",
-        (_, Sampling::Lattice) => "lattice",
-        (_, Sampling::Importance) => "importance",
-    }
+/// Where a setting's samples lie; nothing to say of one ray a pixel.
+fn sampling_name(setting: &Setting) -> String {
+    if setting.antialiasing == 0 { "-".to_owned() } else { setting.sampling.to_string() }
 }

@@ -56,6 +56,8 @@ pub fn run(scene: Option<&Path>, options: &Options) -> Result<Outcome, String> {
         height: input.height,
         tile: tile.get(),
         antialiasing: input.scene.render.antialiasing,
+        sampling: input.scene.render.sampling,
+        formulas: input.arithmetic.formulas,
         precision: input.arithmetic.precision.to_string(),
     };
     let report = Report { subject: &subject, comparison: &comparison, machine: &Machine::here() };

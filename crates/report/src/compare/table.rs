@@ -2,7 +2,7 @@
 
 use super::Report;
 use crate::{machine, style};
-use rayweave_core::ThreadsStart;
+use rayweave_core::{Sampling, ThreadsStart};
 use rayweave_measure::compare::{Role, Row};
 use rayweave_measure::{Comparison, Interval};
 
@@ -34,9 +34,10 @@ pub(super) fn text(report: &Report<'_>) -> String {
 }
 
 fn heading(Report { subject, comparison, .. }: &Report<'_>) -> String {
-    let rays = match subject.antialiasing {
-        0 => "one ray a pixel".to_owned(),
-        density => format!("antialiasing {density}"),
+    let rays = match (subject.antialiasing, subject.sampling) {
+        (0, _) => "one ray a pixel".to_owned(),
+        (density, Sampling::Lattice) => format!("antialiasing {density}"),
+        (density, sampling) => format!("antialiasing {density} by {sampling}"),
     };
     format!(
         "{}, {} x {} pixels, {rays}, {}, tiles of {}; {} interleaved rounds, digest {}",

@@ -74,6 +74,8 @@ fn with_report(comparison: &Comparison, read: impl FnOnce(&Report<'_>) -> String
         height: 400,
         tile: 32,
         antialiasing: 2,
+        sampling: Sampling::Lattice,
+        formulas: Formulas::Robust,
         precision: "f32".to_owned(),
     };
     read(&Report { subject: &subject, comparison, machine: &machine() })

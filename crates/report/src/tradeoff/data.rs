@@ -40,7 +40,7 @@ struct ResultWithSamples<'a> {
 struct Entry {
     formulas: String,
     precision: String,
-    sampling: &'static str,
+    sampling: String,
     antialiasing: u32,
     rays_per_pixel: u32,
     max_reflections: u32,

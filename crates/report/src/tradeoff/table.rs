@@ -62,7 +62,7 @@ fn cells(row: &Row) -> [String; HEADER.len()] {
         if row.in_front { "*" } else { "" }.to_owned(),
         setting.arithmetic.formulas.to_string(),
         setting.arithmetic.precision.to_string(),
-        sampling_name(setting).to_owned(),
+        sampling_name(setting),
         setting.rays_per_pixel().to_string(),
         setting.max_reflections.to_string(),
         milliseconds(row.median_ns),
