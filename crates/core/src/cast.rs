@@ -36,9 +36,12 @@ impl Caster {
     }
 
     /// The nearest hit of the ray from `origin` in `direction`, which may have any length but 0. Both
-    /// are first rounded to the precision. A zero direction, or one that is not finite, hits nothing.
+    /// are first rounded to the precision. A zero direction hits nothing, nor does what is not finite.
     #[must_use]
     pub fn nearest_hit(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
+        if !(origin.is_finite() && direction.is_finite()) {
+            return None;
+        }
         self.0.nearest_hit(origin, direction)
     }
 
