@@ -5,7 +5,7 @@
 //! change. To print new ones, run `cargo test -p rayweave-tests --test golden`: the failure shows
 //! the whole table as it has to stand here.
 
-use rayweave_core::{Precision, Scene};
+use rayweave_core::{Arithmetic, Formulas, Precision, Scene, tracer};
 use rayweave_tests::{picture, random_scene::random_scene, scenes};
 
 const WIDTH: u32 = 100;
@@ -22,6 +22,13 @@ const GOLDEN: [Golden; 6] = [
     ("random 1", [[0x75897619aa1417f3, 0x488b9e3d67611244], [0x16ad69731809da0d, 0x3998d874893c010a]]),
     ("random 4", [[0x81a98889a4e9b347, 0x5fc55e20be24d840], [0xa9ee3994424a419a, 0x455c78df7a12842c]]),
     ("random 7", [[0x70aa5e57099b4cf5, 0x1e8081941d8ad6f1], [0x9b87e957c9ff5582, 0xb88e1cc91b04dcfe]]),
+];
+
+/// With the textbook's formulas, without antialiasing: in `f32` and in `f64`.
+#[rustfmt::skip]
+const TEXTBOOK: [(&str, [u64; 2]); 2] = [
+    ("report", [0x9f0d2ca82b800e26, 0x4f43191bd4523d08]),
+    ("room", [0x1c2df3ae0ca9c0e8, 0xa9f4854fe75fcee9]),
 ];
 
 fn scene(name: &str) -> Scene {
@@ -54,6 +61,23 @@ fn pictures_stay_what_they_are() {
         })
         .collect();
     assert!(found == GOLDEN, "the pictures are now\n{table}");
+}
+
+/// Catches the same in the formulas that are there for comparison.
+#[test]
+fn textbook_pictures_stay_what_they_are() {
+    let found = TEXTBOOK.map(|(name, _)| {
+        let mut scene = scene(name);
+        scene.render.antialiasing = 0;
+        let digests = [Precision::F32, Precision::F64].map(|precision| {
+            let arithmetic = Arithmetic { formulas: Formulas::Textbook, precision };
+            let work = tracer(&scene, WIDTH, HEIGHT, arithmetic).expect("a sound scene");
+            let digest = picture::pixel_by_pixel(&*work, WIDTH, HEIGHT).digest();
+            u64::from_str_radix(&digest.short(), 16).expect("16 hexadecimal digits")
+        });
+        (name, digests)
+    });
+    assert!(found == TEXTBOOK, "the pictures are now {found:#018x?}");
 }
 
 /// Catches a table that cannot fail: a digest that is the same for two pictures, because the scene

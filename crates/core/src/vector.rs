@@ -125,3 +125,38 @@ impl<L: Lane> Neg for Vector<L> {
         Self::new(-self.x, -self.y, -self.z)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Catches an error term that is dropped, doubled or of the wrong sign: of sums that cancel, all
+    /// digits are right.
+    #[test]
+    fn accurate_dot_keeps_the_digits_of_sums_that_cancel() {
+        let u = 2f64.powi(-24);
+        let mut cancelled = 0;
+        for i in 1..400_i16 {
+            let k = f32::from(i);
+            let (a, b) =
+                (Vector::new(1.0 + k / 7.0, -k / 3.0, 1.7), Vector::new(k / 11.0, 2.0 + k / 13.0, 0.9));
+            // The last term takes away what the first two give, but for a rounding.
+            let a = Vector { z: -(a.x * b.x + a.y * b.y) / b.z, ..a };
+            for (a, b) in [(a, b), (b, a), (Vector::new(a.z, a.x, a.y), Vector::new(b.z, b.x, b.y))] {
+                let (wide_a, wide_b) = (a.widened(), b.widened());
+                let (exact, terms) = (wide_a.dot(wide_b), wide_a.abs().dot(wide_b.abs()));
+                let error = (f64::from(a.accurate_dot(b)) - exact).abs();
+                assert!(error <= u * exact.abs() + 16.0 * u * u * terms, "{error:e} of {exact:e}");
+                cancelled += usize::from(exact.abs() < 1e-6 * terms);
+            }
+        }
+        assert!(cancelled > 500, "only {cancelled} sums cancel");
+    }
+
+    /// Catches a guard that lets a NaN pass where the error's halves overflow.
+    #[test]
+    fn accurate_dot_of_huge_numbers_is_the_plain_one() {
+        let (a, b) = (Vector::new(1e38_f32, 1.0, 1.0), Vector::new(1.0, 2.0, 3.0));
+        assert_eq!(a.accurate_dot(b), a.dot(b));
+    }
+}
