@@ -5,7 +5,7 @@
 //! change. To print new ones, run `cargo test -p rayweave-tests --test golden`: the failure shows
 //! the whole table as it has to stand here.
 
-use rayweave_core::{Arithmetic, Formulas, Precision, Scene, tracer};
+use rayweave_core::{Arithmetic, Formulas, Precision, Sampling, Scene, tracer};
 use rayweave_tests::{picture, random_scene::random_scene, scenes};
 
 const WIDTH: u32 = 100;
@@ -30,6 +30,9 @@ const TEXTBOOK: [(&str, [u64; 2]); 2] = [
     ("report", [0x9f0d2ca82b800e26, 0x4f43191bd4523d08]),
     ("room", [0x1c2df3ae0ca9c0e8, 0xa9f4854fe75fcee9]),
 ];
+
+/// The report's scene with samples by importance, a density of 2: in `f32` and in `f64`.
+const IMPORTANCE: [u64; 2] = [0x62574ebf6eb676e0, 0x3481aa9114591d04];
 
 fn scene(name: &str) -> Scene {
     match name.strip_prefix("random ") {
@@ -78,6 +81,19 @@ fn textbook_pictures_stay_what_they_are() {
         (name, digests)
     });
     assert!(found == TEXTBOOK, "the pictures are now {found:#018x?}");
+}
+
+/// Catches the same in the other sampling: a quantile from the system's library, another generator.
+#[test]
+fn importance_pictures_stay_what_they_are() {
+    let mut scene = scene("report");
+    scene.render.antialiasing = 2;
+    scene.render.sampling = Sampling::Importance;
+    let found = [Precision::F32, Precision::F64].map(|precision| {
+        let digest = picture::of_scene(&scene, WIDTH, HEIGHT, precision).digest();
+        u64::from_str_radix(&digest.short(), 16).expect("16 hexadecimal digits")
+    });
+    assert!(found == IMPORTANCE, "the pictures are now {found:#018x?}");
 }
 
 /// Catches a table that cannot fail: a digest that is the same for two pictures, because the scene

@@ -13,7 +13,7 @@ pub use setting::{ARITHMETICS, EXACT, Setting};
 
 use crate::metrics::Difference;
 use cost::Parts;
-use rayweave_core::{Arithmetic, Digest, Image, Scene, Strategy, Work, tracer};
+use rayweave_core::{Arithmetic, Digest, Formulas, Image, Scene, Strategy, Work, tracer};
 use rayweave_measure::compare::{Entry, Executor};
 use rayweave_measure::statistics::{median, median_interval};
 use rayweave_measure::{Interval, Protocol, Stopwatch};
@@ -85,6 +85,13 @@ impl Study {
     #[must_use]
     pub fn fastest_with(&self, psnr: f64) -> Option<&Row> {
         fastest(self.rows.iter().filter(|row| row.error.psnr() >= psnr))
+    }
+
+    /// The same among those with robust formulas.
+    #[must_use]
+    pub fn fastest_robust(&self, psnr: f64) -> Option<&Row> {
+        let robust = |row: &&Row| row.setting.arithmetic.formulas == Formulas::Robust;
+        fastest(self.rows.iter().filter(robust).filter(|row| row.error.psnr() >= psnr))
     }
 
     /// The same among those that differ from the lab report's own in their density alone.

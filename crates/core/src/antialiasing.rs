@@ -67,8 +67,7 @@ impl<S: Scalar> Filter<S> {
     /// `count` samples of equal weight, as dense as the filter is high (filter importance sampling:
     /// Ernst, Stamminger and Greiner, 2006): the points of a rank-1 lattice in the unit square
     /// (Dammertz and Keller, Image Synthesis by Rank-1 Lattices, 2008), each coordinate moved by the
-    /// inverse of the filter's distribution. For a sum of two neighbouring squares the best such lattice is
-    /// a square one, turned. No two share a row or a column, so an edge along an
+    /// inverse of the filter's distribution. No two share a row or a column, so an edge along an
     /// axis is resolved `count` fold, where a square lattice of as many samples resolves it by the
     /// square root of that.
     fn importance(count: u32) -> Self {
@@ -181,16 +180,17 @@ mod tests {
         assert!((found(|p| p.1) - moment).abs() < 1e-6, "{} in y, {moment} expected", found(|p| p.1));
     }
 
-    /// Catches a search that is content with less: points of a square lattice, turned, whose squared
-    /// distance is their number.
+    /// Catches a search that is content with less: the best squared distances, found by trying all.
     #[test]
     fn the_generator_keeps_points_apart() {
-        for (count, expected) in [(1, 1), (5, 2), (13, 5), (25, 7), (41, 9), (145, 12)] {
+        let cases =
+            [(5, 2, 5), (13, 5, 13), (25, 7, 25), (41, 9, 41), (61, 17, 65), (85, 38, 85), (145, 12, 145)];
+        for (count, expected, apart) in cases {
             let generator = rank1_generator(count);
-            assert_eq!(generator, expected, "{count}");
             let square = |i: u32| (i * generator % count).min(count - i * generator % count).pow(2);
             let nearest = (1..=count / 2).map(|i| i * i + square(i)).min();
-            assert!(nearest.is_none_or(|squared| squared == count), "{count}: {nearest:?}");
+            assert_eq!((generator, nearest), (expected, Some(apart)), "{count}");
         }
+        assert_eq!(rank1_generator(1), 1);
     }
 }

@@ -77,8 +77,9 @@ impl<S: Scalar, F: Family> Tracer<S, F> {
         [color.x.to_f32(), color.y.to_f32(), color.z.to_f32()]
     }
 
-    /// The centre of pixel `x` along an axis of `extent` pixels, in half lattice steps from the
-    /// middle of the picture: a whole number below 2^23.
+    /// The centre of pixel `x` along an axis of `extent` pixels, in half steps of the filter's from the
+    /// middle of the picture: a whole number below 2^23. So places on the lattice are exact in `f32`; others
+    /// are rounded there, to 1/512 of a pixel in the widest picture and 1/65536 in one of 500.
     fn centre(&self, x: u32, extent: u32) -> S {
         let half_pixels = 2 * i64::from(x) + 1 - i64::from(extent);
         S::from_f64((i64::from(self.filter.density()) * half_pixels) as f64)

@@ -35,7 +35,7 @@ impl<L: Lane> Vector<L> {
     }
 
     /// The dot product as if computed in twice the digits and then rounded: Dot2 of Ogita, Rump and Oishi
-    /// (Accurate Sum and Dot Product, 2005). Where its intermediate numbers overflow, the plain one.
+    /// (Accurate Sum and Dot Product, 2005). Barring underflow; where its intermediate numbers overflow, the plain one.
     #[inline(always)]
     pub(crate) fn accurate_dot(self, other: Self) -> L {
         let product = |a: L, b: L| (a * b, product_error(a, b, a * b));

@@ -19,7 +19,8 @@ pub struct SceneOptions {
     /// Size of the picture in pixels, each 1..=65535 [default: the scene's]
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub size: Option<(u32, u32)>,
-    /// Density: 0 for one ray a pixel, else N for (2 N + 1)^2 on the lattice [default: the scene's]
+    /// Density: 0 for one ray a pixel, else N for (2 N + 1)^2 on the lattice or N^2 + (N + 1)^2 by
+    /// importance [default: the scene's]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=i64::from(MAX_ANTIALIASING)))]
     pub antialiasing: Option<u32>,
     /// Where the samples of a pixel lie

@@ -41,14 +41,16 @@ impl PendingFile {
     }
 }
 
-/// Whether no two of the files that are asked for are the same.
+/// Whether no two of the files that are named are the same: neither two results, nor a result and what
+/// it is computed from, which would be lost.
 pub fn distinct_files(paths: &[&Option<PathBuf>]) -> Result<(), String> {
-    let mut seen: Vec<&Path> = Vec::new();
+    let mut seen: Vec<PathBuf> = Vec::new();
     for path in paths.iter().filter_map(|path| path.as_deref()) {
-        if seen.contains(&path) {
-            return Err(format!("{}: two results cannot be written to the same file", path.display()));
+        let file = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        if seen.contains(&file) {
+            return Err(format!("{}: cannot be written: it is named twice, or is the input", path.display()));
         }
-        seen.push(path);
+        seen.push(file);
     }
     Ok(())
 }

@@ -64,8 +64,15 @@ fn malformed_cases_are_named_by_their_line() {
     assert!(message.starts_with("error: bad.jsonl: line 3, column "), "{message}");
     let message = rayweave(folder.path(), "intersect none.jsonl").expect_refusal();
     assert!(message.starts_with("error: none.jsonl: cannot be read"), "{message}");
-    for arguments in ["error --target-psnr NaN", "error --size 3", "error --json a --csv a", "error no.toml"]
-    {
+    // The last two would write over what they are to read.
+    for arguments in [
+        "error --target-psnr NaN",
+        "error --size 3",
+        "error --json a --csv a",
+        "error no.toml --pictures p",
+        "intersect bad.jsonl --json ./bad.jsonl",
+        "error bad.jsonl --svg bad.jsonl",
+    ] {
         rayweave(folder.path(), arguments).expect_refusal();
     }
     assert_eq!(files_in(folder.path()), ["bad.jsonl"]);

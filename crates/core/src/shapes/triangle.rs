@@ -87,7 +87,7 @@ impl<S: Scalar> Triangle<S> {
     /// between those of the corners.
     ///
     /// The corners are projected to within `3u` of their coordinates, and then every sign is exact. Relative
-    /// error of `t`: at most `2u sum |n_i (a_i - o_i)| / |n . (a - o)| + u sum |n_i d_i| / |n . d| + 3u`: the
+    /// error of `t` in `f32`, whose corners `f64` turns into a normal without a loss: at most `2u sum |n_i (a_i - o_i)| / |n . (a - o)| + u sum |n_i d_i| / |n . d| + 3u`: the
     /// rounded normal and differences, then two sums and a quotient rounded once.
     #[inline(always)]
     pub(crate) fn intersect<L: Lane<Scalar = S>, const AXIS: usize>(

@@ -2,7 +2,7 @@
 
 use crate::input::Input;
 use crate::options::{SceneOptions, all_threads, checked_tile, distinct, parse_strategy, parse_threads};
-use crate::output::PendingFile;
+use crate::output::{PendingFile, distinct_files};
 use crate::{Outcome, print, progress};
 use clap::Args;
 use rayweave_core::Strategy;
@@ -39,6 +39,7 @@ pub struct Arguments {
 const AWKWARD_SIZES: [(u32, u32); 5] = [(1, 1), (1, 50), (50, 1), (7, 3), (97, 61)];
 
 pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
+    distinct_files(&[&arguments.scene, &arguments.json])?;
     let json = arguments.json.as_deref().map(PendingFile::create).transpose()?;
     let input = Input::load(arguments.scene.as_deref(), &arguments.options)?;
     // Before anything is checked: whether the full picture can be made at all.

@@ -44,7 +44,7 @@ pub struct Options {
 }
 
 pub fn run(scene: Option<&Path>, options: &Options) -> Result<Outcome, String> {
-    distinct_files(&[&options.json, &options.csv])?;
+    distinct_files(&[&scene.map(Path::to_owned), &options.json, &options.csv])?;
     let json = options.json.as_deref().map(PendingFile::create).transpose()?;
     let csv = options.csv.as_deref().map(PendingFile::create).transpose()?;
     let input = Input::load(scene, &options.scene_options)?;

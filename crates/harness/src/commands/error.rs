@@ -62,13 +62,12 @@ const STEPS: f64 = 1000.0;
 
 pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let files = [&arguments.json, &arguments.csv, &arguments.svg];
-    distinct_files(&files)?;
+    distinct_files(&[&arguments.scene, &arguments.json, &arguments.csv, &arguments.svg])?;
     let [json, csv, svg] = files.map(|path| path.as_deref().map(PendingFile::create).transpose());
     let (json, csv, svg) = (json?, csv?, svg?);
-    if let Some(folder) = &arguments.pictures {
-        fs::create_dir_all(folder).map_err(|e| format!("{}: cannot be made: {e}", folder.display()))?;
-    }
     let (name, file) = input::load(arguments.scene.as_deref())?;
+    // The folder, and that it can be written to, before minutes of measuring.
+    let reference_file = arguments.pictures.as_deref().map(reference_file).transpose()?;
     let scene = file.scene;
     let size = arguments.size.map_or_else(|| default_size(&scene, file.image), Ok)?;
 
@@ -100,7 +99,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     json.map_or(Ok(()), |file| file.finish(report.json().as_bytes()))?;
     csv.map_or(Ok(()), |file| file.finish(report.csv().as_bytes()))?;
     svg.map_or(Ok(()), |file| file.finish(report.svg()?.as_bytes()))?;
-    arguments.pictures.as_deref().map_or(Ok(()), |folder| write_pictures(folder, &scene, &study, size))?;
+    if let (Some(folder), Some(file)) = (&arguments.pictures, reference_file) {
+        file.finish(&Format::Png.encode(&study.reference.picture)?)?;
+        write_pictures(folder, &scene, &study, size)?;
+    }
     Ok(if study.repeatable { Outcome::Held } else { Outcome::Failed })
 }
 
@@ -116,7 +118,8 @@ fn default_size(scene: &Scene, image: ImageSize) -> Result<(u32, u32), String> {
     let nanoseconds = stopwatch.render(&entry)?.sample.render_ns as f64;
     let per_ray = nanoseconds / (f64::from(pilot.0 * pilot.1 * setting.rays_per_pixel()));
     let rays: u32 = Setting::all(scene).iter().map(Setting::rays_per_pixel).sum();
-    while pixels > 1.0 && pixels * f64::from(rays) * per_ray > ROUND.as_nanos() as f64 {
+    let area = |(width, height): (u32, u32)| f64::from(width) * f64::from(height);
+    while pixels > 1.0 && area(shrunk(image, pixels)) * f64::from(rays) * per_ray > ROUND.as_nanos() as f64 {
         pixels /= 2.0;
     }
     Ok(shrunk(image, pixels))
@@ -126,7 +129,8 @@ fn default_size(scene: &Scene, image: ImageSize) -> Result<(u32, u32), String> {
 fn shrunk(image: ImageSize, pixels: f64) -> (u32, u32) {
     let (width, height) = (f64::from(image.width), f64::from(image.height));
     let scale = (pixels / (width * height)).sqrt().min(1.0);
-    let side = |side: f64| ((side * scale).floor() as u32).max(1);
+    // Of a very long picture the short side is one pixel, and the long one as many as there are.
+    let side = |side: f64| ((side * scale).floor() as u32).clamp(1, (pixels as u32).max(1));
     (side(width), side(height))
 }
 
@@ -139,13 +143,17 @@ fn render(work: &dyn Work, (width, height): (u32, u32)) -> Result<Image, String>
     Ok(picture)
 }
 
-/// The truth, then what is worth a look: the picture and its difference from the truth.
+fn reference_file(folder: &Path) -> Result<PendingFile, String> {
+    fs::create_dir_all(folder).map_err(|e| format!("{}: cannot be made: {e}", folder.display()))?;
+    PendingFile::create(&folder.join("reference.png"))
+}
+
+/// What is worth a look: the picture and its difference from the truth.
 fn write_pictures(folder: &Path, scene: &Scene, study: &Study, size: (u32, u32)) -> Result<(), String> {
     let write = |name: &str, picture: &Image| {
         PendingFile::create(&folder.join(name))?.finish(&Format::Png.encode(picture)?)
     };
     let truth = &study.reference.picture;
-    write("reference.png", truth)?;
     let own = study.report_row();
     for row in study.rows.iter().filter(|row| row.in_front || row.setting == own.setting) {
         let scene = row.setting.applied_to(scene);

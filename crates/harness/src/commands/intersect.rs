@@ -1,7 +1,7 @@
 //! `rayweave intersect`: hard cases through the kernel that renders.
 
 use crate::options::FormulasOption;
-use crate::output::PendingFile;
+use crate::output::{PendingFile, distinct_files};
 use crate::{Outcome, print};
 use clap::{Args, ValueEnum};
 use rayweave_accuracy::kernel::{self, Prepared};
@@ -37,6 +37,7 @@ enum KernelPrecision {
 }
 
 pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
+    distinct_files(&[&Some(arguments.cases.clone()), &arguments.json])?;
     let out = arguments.json.as_deref().map(PendingFile::create).transpose()?;
     let name = arguments.cases.display();
     let file = File::open(&arguments.cases).map_err(|e| format!("{name}: cannot be read: {e}"))?;

@@ -2,7 +2,7 @@
 
 use crate::input::Input;
 use crate::options::{SceneOptions, TileOption, all_threads, parse_strategy, parse_threads};
-use crate::output::PendingFile;
+use crate::output::{PendingFile, distinct_files};
 use crate::picture::Format;
 use crate::progress::Watched;
 use crate::{Outcome, print};
@@ -34,6 +34,7 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let path = arguments.output.clone().unwrap_or_else(|| default_output(arguments.scene.as_deref()));
+    distinct_files(&[&arguments.scene, &Some(path.clone())])?;
     let format = Format::of(&path)?;
     let file = PendingFile::create(&path)?;
     let input = Input::load(arguments.scene.as_deref(), &arguments.options)?;

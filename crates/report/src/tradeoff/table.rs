@@ -82,12 +82,18 @@ fn cost_cells(cost: &Cost) -> [String; COST_HEADER.len()] {
 
 fn notes(report: &Report<'_>) -> String {
     let study = report.study;
-    let truth = psnr(study.reference.uncertainty);
-    let finite = |row: &Row| row.error.rmse.is_finite();
-    let best = study.rows.iter().filter(|row| finite(row)).map(|row| row.error.rmse).fold(1.0, f64::min);
+    let truth = decibels(psnr(study.reference.uncertainty));
+    let best = study.rows.iter().map(|row| row.error.rmse).fold(1.0, f64::min);
     let share = study.reference.uncertainty / best;
-    let verdict =
-        if share <= 0.1 { "which is enough for all of them" } else { "too much to tell the very best apart" };
+    let verdict = if study.reference.uncertainty == 0.0 {
+        "whose halves are the same".to_owned()
+    } else if share <= 0.1 {
+        format!(
+            "whose own error is about {truth} dB, {share:.2} of the smallest one here: enough for all of them"
+        )
+    } else {
+        format!("whose own error is about {truth} dB: too much to tell the very best apart")
+    };
     let repeatable = if study.repeatable {
         "Every timed picture was verified."
     } else {
@@ -95,11 +101,10 @@ fn notes(report: &Report<'_>) -> String {
     };
     format!(
         "*: on the Pareto front. PSNR and what follows: against robust f64 with {RAYS_PER_PIXEL} rays a pixel,\n\
-         whose own error is about {} dB, {share:.2} of the smallest one here: {verdict}.\n\
+         {verdict}.\n\
          arithmetic: against the same rays in robust f64. sampling: what is left in robust f64 with all bounces.\n\
          Edges make most of the error, and a picture twice as large has half as many of them a pixel: its PSNR\n\
-         is some 3 dB higher. {repeatable}",
-        decibels(truth)
+         is some 3 dB higher. Settings whose intervals overlap may change places in another run. {repeatable}"
     )
 }
 
@@ -110,19 +115,24 @@ fn choice(report: &Report<'_>) -> String {
     let Some(row) = study.fastest_with(target) else {
         return format!("No setting reaches {target} dB here; the report's own has {own_psnr} dB.");
     };
-    let plain = study.fastest_report_like(target).map_or_else(
-        || "With its formulas and lattice nothing here does.".to_owned(),
-        |plain| {
+    let like = study.fastest_report_like(target).map_or_else(
+        || "With its formulas, lattice and all bounces nothing here reaches it.".to_owned(),
+        |like| {
             format!(
-                "With its formulas and lattice it takes {} rays a pixel: {:.2} times as long.",
-                plain.setting.rays_per_pixel(),
-                plain.median_ns / row.median_ns
+                "With its formulas, lattice and all bounces it takes {} rays a pixel: {:.2} times as long.",
+                like.setting.rays_per_pixel(),
+                row.speedup.median / like.speedup.median
             )
         },
     );
+    // What is fast here may be wrong elsewhere: the formulas that hold are named in any case.
+    let robust = study.fastest_robust(target).filter(|robust| robust.setting != row.setting);
+    let robust = robust.map_or_else(String::new, |robust| {
+        format!("\nOf robust formulas: {}, {} times as fast.", robust.setting, interval(robust.speedup))
+    });
     format!(
         "For {target} dB choose {}: {} dB in {} ms, {} times as fast as the report's own setting,\n\
-         which has {own_psnr} dB. {plain}",
+         which has {own_psnr} dB. {like}{robust}",
         row.setting,
         decibels(row.error.psnr()),
         milliseconds(row.median_ns),
