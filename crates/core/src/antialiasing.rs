@@ -183,13 +183,13 @@ mod tests {
     /// Catches a search that is content with less: the best squared distances, found by trying all.
     #[test]
     fn the_generator_keeps_points_apart() {
-        let cases =
-            [(5, 2, 5), (13, 5, 13), (25, 7, 25), (41, 9, 41), (61, 17, 65), (85, 38, 85), (145, 12, 145)];
-        for (count, expected, apart) in cases {
+        for (count, apart) in
+            [(5, 5), (13, 13), (25, 25), (41, 41), (61, 65), (85, 85), (113, 125), (2113, 2378)]
+        {
             let generator = rank1_generator(count);
             let square = |i: u32| (i * generator % count).min(count - i * generator % count).pow(2);
             let nearest = (1..=count / 2).map(|i| i * i + square(i)).min();
-            assert_eq!((generator, nearest), (expected, Some(apart)), "{count}");
+            assert_eq!(nearest, Some(apart), "{count}");
         }
         assert_eq!(rank1_generator(1), 1);
     }
