@@ -58,6 +58,7 @@ impl<S: Scalar> Cylinder<S> {
         if !crossed.any() {
             return miss();
         }
+        let closest = closest + (ax * dx + az * dz) * aim.inverse_square;
         let power = (cx * cx + cz * cz) - radius_squared;
         let (near, far) = quadric::roots(closest, discriminant, power, aim.inverse_square);
         // Differences first, as everywhere.
