@@ -154,8 +154,8 @@ impl Placed {
     ) -> Result<Self, rayweave_core::scene::SceneError> {
         let (mut size, mut middle) = (1.0, DVec3::ZERO);
         if !as_it_is {
-            size = libm::exp2(20.0 * fraction(random) - 10.0);
-            middle = size * 70.0 * DVec3::from_array([(); 3].map(|()| 2.0 * fraction(random) - 1.0));
+            size = libm::exp2(20.0 * random.fraction() - 10.0);
+            middle = size * 70.0 * DVec3::from_array([(); 3].map(|()| 2.0 * random.fraction() - 1.0));
         }
         let scene = moved(&enlarged(&meshes::scene_of(mesh), size), middle);
         // The corners that the kernel has are aimed at, to the last bit.
@@ -169,7 +169,7 @@ impl Placed {
         let mut coordinate = || match random.below(4) {
             0 => 0.0,
             1 => sixteenths(random) * 0.5 - 0.25,
-            _ => fraction(random) * 0.7 - 0.35,
+            _ => random.fraction() * 0.7 - 0.35,
         };
         let from = DVec3::from_array([(); 3].map(|()| coordinate()));
         let origin = self.middle + self.size * from;
@@ -180,15 +180,10 @@ impl Placed {
         let share = match random.below(4) {
             0 => 0.0,
             1 => sixteenths(random),
-            _ => fraction(random),
+            _ => random.fraction(),
         };
         Ray { origin, direction: (1.0 - share) * a + share * b - origin }
     }
-}
-
-/// Evenly in `0..1`.
-fn fraction(random: &mut SplitMix64) -> f64 {
-    (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
 }
 
 /// A multiple of 1/16 in `0..=1`.

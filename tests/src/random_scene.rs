@@ -80,7 +80,7 @@ impl Draw {
 
     /// In 0..1.
     fn unit(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / (1u64 << 53) as f64
+        self.random.fraction()
     }
 
     fn between(&mut self, low: f64, high: f64) -> f64 {

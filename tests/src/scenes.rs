@@ -1,5 +1,6 @@
 //! The scenes that the repository comes with.
 
+use crate::errata;
 use rayweave_core::Scene;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -31,6 +32,14 @@ pub fn hard() -> Vec<String> {
     let mut names: Vec<_> = fs::read_dir(folder().join("hard")).expect("a folder").map(name).collect();
     names.sort();
     names
+}
+
+/// Nothing at all, under one light: something to put things into, whose material is number 0.
+#[must_use]
+pub fn empty() -> Scene {
+    let mut scene = errata::shadings().swap_remove(0).scene;
+    scene.triangles.clear();
+    scene
 }
 
 fn folder() -> PathBuf {

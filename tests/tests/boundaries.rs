@@ -4,18 +4,12 @@
 use glam::DVec3;
 use rayweave_core::scene::{Cylinder, Plane, Triangle};
 use rayweave_core::{Caster, Precision, Scene};
-use rayweave_tests::errata;
+use rayweave_tests::scenes::empty;
 
 const PRECISIONS: [Precision; 2] = [Precision::F32, Precision::F64];
 
 fn v(x: f64, y: f64, z: f64) -> DVec3 {
     DVec3::new(x, y, z)
-}
-
-fn empty() -> Scene {
-    let mut scene = errata::shadings().swap_remove(0).scene;
-    scene.triangles.clear();
-    scene
 }
 
 /// Catches a `<` for a `<=`: both rims and the outline of a tube belong to it.
@@ -31,6 +25,19 @@ fn rims_and_outlines_belong_to_a_cylinder() {
     }
 }
 
+/// Of 400 rays to the surface around `near`, which is lit from above, those that find less than half of the
+/// light that the luckiest finds.
+fn dark_pixels(scene: &Scene, near: DVec3, normal: DVec3) -> usize {
+    let mut scene = scene.clone();
+    scene.lights.truncate(1);
+    scene.lights[0].position = near + 40.0 * normal;
+    let caster = Caster::new(&scene, Precision::F32).expect("a sound scene");
+    let offsets = (0..400).map(|i| v(f64::from(i % 20) / 20.0 - 0.5, -1.0, f64::from(i / 20) / 20.0 - 0.5));
+    let sums: Vec<f64> = offsets.map(|d| caster.color(near + 3.0 * normal, d).iter().sum()).collect();
+    let brightest = sums.iter().copied().fold(0.0, f64::max);
+    sums.iter().filter(|sum| **sum < 0.5 * brightest).count()
+}
+
 /// Catches a clearance that leaves out the shape's own coordinates: the plane is given by a point far
 /// from what is seen of it.
 #[test]
@@ -42,16 +49,7 @@ fn a_plane_anchored_far_away_does_not_shadow_itself() {
         let anchor = narrow(near + sign * 1e5 * along);
         let near = anchor - sign * 1e5 * along;
         let plane = Plane { point: anchor, normal, material: 0 };
-        let mut scene = Scene { planes: vec![plane], ..empty() };
-        scene.lights.truncate(1);
-        scene.lights[0].position = near + 40.0 * normal;
-        let caster = Caster::new(&scene, Precision::F32).expect("a sound scene");
-        let offsets =
-            (0..400).map(|i| v(f64::from(i % 20) / 20.0 - 0.5, -1.0, f64::from(i / 20) / 20.0 - 0.5));
-        let sums: Vec<f64> = offsets.map(|d| caster.color(near + 3.0 * normal, d).iter().sum()).collect();
-        let brightest = sums.iter().copied().fold(0.0, f64::max);
-        let dark = sums.iter().filter(|sum| **sum < 0.5 * brightest).count();
-        assert_eq!(dark, 0, "{sign}");
+        assert_eq!(dark_pixels(&Scene { planes: vec![plane], ..empty() }, near, normal), 0, "{sign}");
     }
 }
 
@@ -91,14 +89,7 @@ fn a_triangle_with_far_corners_does_not_shadow_itself() {
     let far = [near + 1e5 * x, near - 1e5 * x + 1e5 * y, near - 1e5 * y - 1e5 * x].map(narrow);
     for turn in 0..3 {
         let vertices = [far[turn], far[(turn + 1) % 3], far[(turn + 2) % 3]];
-        let mut scene = Scene { triangles: vec![Triangle { vertices, material: 0 }], ..empty() };
-        scene.lights.truncate(1);
-        scene.lights[0].position = near + 40.0 * normal;
-        let caster = Caster::new(&scene, Precision::F32).expect("a sound scene");
-        let offsets =
-            (0..400).map(|i| v(f64::from(i % 20) / 20.0 - 0.5, -1.0, f64::from(i / 20) / 20.0 - 0.5));
-        let sums: Vec<f64> = offsets.map(|d| caster.color(near + 3.0 * normal, d).iter().sum()).collect();
-        let brightest = sums.iter().copied().fold(0.0, f64::max);
-        assert_eq!(sums.iter().filter(|sum| **sum < 0.5 * brightest).count(), 0, "{turn}");
+        let triangle = Triangle { vertices, material: 0 };
+        assert_eq!(dark_pixels(&Scene { triangles: vec![triangle], ..empty() }, near, normal), 0, "{turn}");
     }
 }

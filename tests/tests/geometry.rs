@@ -12,8 +12,8 @@ use rayweave_core::Caster;
 use rayweave_core::cast::Hit;
 use rayweave_core::scene::{Cylinder, Plane, Sphere, Triangle};
 use rayweave_core::{Precision, Scene};
-use rayweave_tests::errata;
 use rayweave_tests::model::{self, Primitive, Ray};
+use rayweave_tests::scenes;
 use rayweave_tests::transform::{enlarged, mirrored, moved, rounded};
 
 const PRECISIONS: [Precision; 2] = [Precision::F32, Precision::F64];
@@ -115,8 +115,7 @@ fn share() -> impl Strategy<Value = DVec3> {
 
 /// A scene of these things, in the order of the model.
 fn scene_of(things: &[Primitive]) -> Scene {
-    let mut scene = errata::shadings().swap_remove(0).scene;
-    scene.triangles.clear();
+    let mut scene = scenes::empty();
     for thing in things {
         match *thing {
             Primitive::Plane(plane) => scene.planes.push(plane),

@@ -5,7 +5,7 @@ use rayweave_core::precision::{Demand, F32_DISPLACEMENT, F32_MIRRORS};
 use rayweave_core::scene::{Cylinder, Material, Plane, Sphere, Triangle};
 use rayweave_core::{Precision, Scene};
 use rayweave_tests::transform::{enlarged, moved};
-use rayweave_tests::{errata, metrics, model, picture, scenes};
+use rayweave_tests::{metrics, model, picture, scenes};
 
 fn chosen(scene: &Scene) -> Precision {
     Demand::of(scene).precision()
@@ -13,8 +13,7 @@ fn chosen(scene: &Scene) -> Precision {
 
 /// Nothing at all, seen from the origin.
 fn empty() -> Scene {
-    let mut scene = errata::shadings().swap_remove(0).scene;
-    scene.triangles.clear();
+    let mut scene = scenes::empty();
     scene.lights.clear();
     scene.camera.position = DVec3::ZERO;
     scene

@@ -4,18 +4,13 @@ use glam::DVec3;
 use rayweave_core::scene::{Cylinder, Plane, Sphere, Triangle};
 use rayweave_core::{Arithmetic, Caster, Formulas, Precision, Scene, tracer};
 use rayweave_measure::random::SplitMix64;
-use rayweave_tests::{errata, metrics, model, picture, random_scene::random_scene};
+use rayweave_tests::scenes::empty;
+use rayweave_tests::{metrics, model, picture, random_scene::random_scene};
 
 const TEXTBOOK: Arithmetic = Arithmetic { formulas: Formulas::Textbook, precision: Precision::F64 };
 
 fn v(x: f64, y: f64, z: f64) -> DVec3 {
     DVec3::new(x, y, z)
-}
-
-fn empty() -> Scene {
-    let mut scene = errata::shadings().swap_remove(0).scene;
-    scene.triangles.clear();
-    scene
 }
 
 fn t(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<f64> {
@@ -73,7 +68,7 @@ fn random_scenes_agree() {
 #[test]
 fn both_families_hit_the_same() {
     let mut random = SplitMix64::new(1);
-    let mut draw = || (random.next_u64() >> 11) as f64 / 2f64.powi(52) - 1.0;
+    let mut draw = || 2.0 * random.fraction() - 1.0;
     let mut hits = [0; 4];
     for _ in 0..4000 {
         let mut p = || 4.0 * v(draw(), draw(), draw());

@@ -3,7 +3,7 @@
 
 use rayweave_accuracy::Difference;
 use rayweave_accuracy::tradeoff::{Experiment, Reference, Row, Setting, Study};
-use rayweave_core::{Image, Sampling, Scene, Work, tracer};
+use rayweave_core::{Image, Sampling, Scene, Work};
 use rayweave_measure::Protocol;
 use rayweave_tests::{metrics, model, picture, scenes};
 use std::time::Duration;
@@ -22,8 +22,7 @@ fn study(scene: &Scene) -> Study {
 }
 
 fn picture_with(scene: &Scene, setting: Setting) -> Image {
-    let work = tracer(&setting.applied_to(scene), SIZE.0, SIZE.1, setting.arithmetic).expect("a sound scene");
-    render(&*work).expect("a picture")
+    render(&*setting.work(scene, SIZE).expect("a sound scene")).expect("a picture")
 }
 
 /// Catches errors that are another setting's, an arithmetic that is compared with other rays, a front

@@ -11,6 +11,7 @@ use std::time::Instant;
 
 /// A case, ready to be asked again and again.
 pub struct Prepared {
+    id: String,
     /// `None` where the primitive means nothing: it hits nothing.
     caster: Option<Caster>,
     origin: DVec3,
@@ -24,6 +25,7 @@ impl Prepared {
     #[must_use]
     pub fn new(case: &Case, arithmetic: Arithmetic) -> Self {
         Self {
+            id: case.id.clone(),
             caster: Caster::new(&scene_of(&case.primitive), arithmetic).ok(),
             origin: vector(case.ray.origin),
             direction: vector(case.ray.direction),
@@ -40,13 +42,19 @@ impl Prepared {
             Precision::F64 => hit.t,
         })
     }
+
+    /// What the kernel answers.
+    #[must_use]
+    pub fn outcome(&self) -> Outcome {
+        let t = self.hit();
+        Outcome { id: self.id.clone(), hit: t.is_some(), t }
+    }
 }
 
-/// What the kernel answers to `case`.
+/// What the kernel that renders answers to `case`.
 #[must_use]
 pub fn outcome(case: &Case, arithmetic: Arithmetic) -> Outcome {
-    let t = Prepared::new(case, arithmetic).hit();
-    Outcome { id: case.id.clone(), hit: t.is_some(), t }
+    Prepared::new(case, arithmetic).outcome()
 }
 
 /// Passes over the cases, of which the median counts.
@@ -58,7 +66,7 @@ const RAYS: usize = 4000;
 /// The time of a ray in nanoseconds, from origin and direction to the point and the normal of the hit,
 /// the call included; `None` without cases. The rays come one by one: a packet may be faster.
 #[must_use]
-pub fn nanoseconds_per_ray(cases: &[Prepared]) -> Option<f64> {
+pub fn nanoseconds_per_ray(cases: &[&Prepared]) -> Option<f64> {
     if cases.is_empty() {
         return None;
     }

@@ -25,16 +25,12 @@ impl Difference {
     /// If the pictures differ in size.
     #[must_use]
     pub fn between(truth: &Image, found: &Image) -> Self {
-        let size = |image: &Image| (image.width(), image.height());
-        assert_eq!(size(truth), size(found), "the pictures differ in size");
         let pairs = || truth.pixels().iter().zip(found.pixels());
-        let channels = || pairs().flat_map(|(a, b)| (0..3).map(|c| error(a[c], b[c])));
         let off = |(a, b): &(&[f32; 3], &[f32; 3])| (0..3).any(|c| error(a[c], b[c]) > 1.0 / 255.0);
-        let count = truth.pixels().len() as f64;
         Self {
-            rmse: (channels().map(|error| error * error).sum::<f64>() / (3.0 * count)).sqrt(),
-            max: channels().fold(0.0, f64::max),
-            share_off: pairs().filter(off).count() as f64 / count,
+            rmse: rmse(truth, found),
+            max: errors(truth, found).fold(0.0, f64::max),
+            share_off: pairs().filter(off).count() as f64 / truth.pixels().len() as f64,
             flip: flip::mean(&flip::map(truth, found)),
         }
     }
@@ -44,6 +40,25 @@ impl Difference {
     pub fn psnr(&self) -> f64 {
         psnr(self.rmse)
     }
+}
+
+/// The root mean square error over all channels alone, as in [`Difference::rmse`].
+///
+/// # Panics
+///
+/// If the pictures differ in size.
+#[must_use]
+pub fn rmse(truth: &Image, found: &Image) -> f64 {
+    let squares: f64 = errors(truth, found).map(|error| error * error).sum();
+    (squares / (3.0 * truth.pixels().len() as f64)).sqrt()
+}
+
+/// Of each channel.
+fn errors<'a>(truth: &'a Image, found: &'a Image) -> impl Iterator<Item = f64> + 'a {
+    let size = |image: &Image| (image.width(), image.height());
+    assert_eq!(size(truth), size(found), "the pictures differ in size");
+    let (truth, found) = (truth.pixels().as_flattened(), found.pixels().as_flattened());
+    truth.iter().zip(found).map(|(&a, &b)| error(a, b))
 }
 
 /// The peak signal-to-noise ratio in dB that belongs to a root mean square error, for a peak of 1.

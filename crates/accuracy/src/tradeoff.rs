@@ -8,14 +8,14 @@ mod setting;
 
 pub use cost::Cost;
 pub use front::pareto_front;
-pub use reference::{RAYS_PER_PIXEL, Reference};
+pub use reference::{Reference, reference_rays_per_pixel};
 pub use setting::{ARITHMETICS, EXACT, Setting};
 
-use crate::metrics::Difference;
+use crate::metrics::{Difference, rmse};
 use cost::Parts;
-use rayweave_core::{Arithmetic, Digest, Formulas, Image, Scene, Strategy, Work, tracer};
-use rayweave_measure::compare::{Entry, Executor};
-use rayweave_measure::statistics::{median, median_interval};
+use rayweave_core::{Digest, Formulas, Image, Scene, Strategy, Work};
+use rayweave_measure::compare::{Entry, Executor, Rendering};
+use rayweave_measure::statistics::{median, ratio_interval};
 use rayweave_measure::{Interval, Protocol, Stopwatch};
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::time::Instant;
@@ -108,9 +108,9 @@ fn fastest<'a>(rows: impl Iterator<Item = &'a Row>) -> Option<&'a Row> {
 }
 
 /// One of the pictures that are timed.
-struct Subject {
-    scene: Scene,
-    arithmetic: Arithmetic,
+struct Subject<'a> {
+    scene: &'a Scene,
+    setting: Setting,
     digest: Option<Digest>,
     samples_ns: Vec<u64>,
 }
@@ -132,8 +132,7 @@ impl Experiment<'_> {
         let reference = Reference::new(self.scene, self.size, render)?;
         let settings = Setting::all(self.scene);
         let parts = Parts::of(self.scene);
-        let mut subjects: Vec<Subject> =
-            settings.iter().map(|s| Subject::new(s.applied_to(self.scene), s.arithmetic)).collect();
+        let mut subjects: Vec<Subject<'_>> = settings.iter().map(|&s| Subject::new(self.scene, s)).collect();
         subjects.extend(parts.subjects());
 
         let mut errors: Vec<Errors> = Vec::new();
@@ -143,7 +142,8 @@ impl Experiment<'_> {
         while let Some(turn) = schedule.next(begin.elapsed()) {
             progress(turn.fraction);
             let subject = &mut subjects[turn.entry];
-            let (picture, digest, nanoseconds) = self.render(subject)?;
+            let Timed { picture, digest, nanoseconds } =
+                timed(self.strategy, &subject.setting, subject.scene, self.size)?;
             if turn.round.is_some() {
                 subject.samples_ns.push(nanoseconds);
                 repeatable &= subject.digest == Some(digest);
@@ -152,13 +152,13 @@ impl Experiment<'_> {
             subject.digest = Some(digest);
             if turn.entry < settings.len() {
                 // Of settings that differ in the arithmetic the most exact one comes first.
-                if subject.arithmetic == EXACT {
+                if subject.setting.arithmetic == EXACT {
                     exact = Some(picture.clone());
                 }
                 let exact = exact.as_ref().unwrap_or(&picture);
                 errors.push(Errors {
                     all: Difference::between(&reference.picture, &picture),
-                    arithmetic: Difference::between(exact, &picture).rmse,
+                    arithmetic: rmse(exact, &picture),
                 });
             }
         }
@@ -172,21 +172,39 @@ impl Experiment<'_> {
             repeatable,
         })
     }
+}
 
-    fn render(&self, subject: &Subject) -> Result<(Image, Digest, u64), String> {
-        let (width, height) = self.size;
-        let work = tracer(&subject.scene, width, height, subject.arithmetic).map_err(|e| e.to_string())?;
-        let mut stopwatch =
-            Stopwatch::new(&*work, width, height, NonZeroU32::MAX).map_err(|e| e.to_string())?;
-        let rendering = stopwatch.render(&Entry { strategy: self.strategy, threads: NonZeroUsize::MIN })?;
-        Ok((stopwatch.into_picture(), rendering.digest, rendering.sample.render_ns))
+impl<'a> Subject<'a> {
+    fn new(scene: &'a Scene, setting: Setting) -> Self {
+        Self { scene, setting, digest: None, samples_ns: Vec::new() }
     }
 }
 
-impl Subject {
-    fn new(scene: Scene, arithmetic: Arithmetic) -> Self {
-        Self { scene, arithmetic, digest: None, samples_ns: Vec::new() }
-    }
+/// A picture, and how long it took.
+pub struct Timed {
+    /// What was rendered.
+    pub picture: Image,
+    /// Of the picture.
+    pub digest: Digest,
+    /// To render it.
+    pub nanoseconds: u64,
+}
+
+/// Renders `scene` with `setting` once, by `strategy` with one thread.
+///
+/// # Errors
+///
+/// A scene that is not sound, a picture that cannot be, and whatever the strategy says.
+pub fn timed(
+    strategy: &dyn Strategy,
+    setting: &Setting,
+    scene: &Scene,
+    size: (u32, u32),
+) -> Result<Timed, String> {
+    let work = setting.work(scene, size).map_err(|e| e.to_string())?;
+    let mut stopwatch = Stopwatch::new(&*work, size.0, size.1, NonZeroU32::MAX).map_err(|e| e.to_string())?;
+    let Rendering { sample, digest } = stopwatch.render(&Entry { strategy, threads: NonZeroUsize::MIN })?;
+    Ok(Timed { picture: stopwatch.into_picture(), digest, nanoseconds: sample.render_ns })
 }
 
 /// How far a setting's picture is off.
@@ -224,10 +242,8 @@ fn median_ns(samples: &[u64]) -> f64 {
     median(&samples.iter().map(|&ns| ns as f64).collect::<Vec<_>>()).unwrap_or(f64::NAN)
 }
 
-/// The median of `above` over `below` within a round, with its interval.
+/// As [`ratio_interval`]; of NaN without a round.
 fn ratio(above: &[u64], below: &[u64]) -> Interval {
-    // A clock too coarse for the rendering must not make a ratio of 0 / 0.
-    let ratios = above.iter().zip(below).map(|(&a, &b)| a.max(1) as f64 / b.max(1) as f64);
     let none = Interval { median: f64::NAN, low: f64::NAN, high: f64::NAN };
-    median_interval(&ratios.collect::<Vec<_>>()).unwrap_or(none)
+    ratio_interval(above, below).unwrap_or(none)
 }

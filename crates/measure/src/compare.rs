@@ -13,7 +13,7 @@
 //! either; [`Stopwatch`](crate::stopwatch::Stopwatch) is the real one.
 
 use crate::schedule::Protocol;
-use crate::statistics::{Interval, efficiency, karp_flatt, median, median_interval};
+use crate::statistics::{Interval, efficiency, karp_flatt, median, ratio_interval};
 use rayweave_core::{Digest, Strategy, ThreadsStart};
 use std::num::NonZeroUsize;
 use std::time::Duration;
@@ -200,15 +200,19 @@ impl Row {
         }
     }
 
-    fn figures(&self, reference: &[Sample]) -> Option<Figures> {
-        let over = |of: fn(&Sample) -> u64| self.samples.iter().map(move |sample| of(sample) as f64);
-        let pairs = reference.iter().zip(&self.samples);
-        // A clock too coarse for the rendering must not make a ratio of 0 / 0.
-        let ratio = |(a, b): (&Sample, &Sample)| a.render_ns.max(1) as f64 / b.render_ns.max(1) as f64;
-        let speedup = median_interval(&pairs.map(ratio).collect::<Vec<_>>())?;
+    /// The times to render.
+    fn render_ns(&self) -> Vec<u64> {
+        self.samples.iter().map(|sample| sample.render_ns).collect()
+    }
+
+    /// From the times of the reference in the same rounds.
+    fn figures(&self, reference_ns: &[u64]) -> Option<Figures> {
+        let median_of =
+            |of: fn(&Sample) -> u64| median(&self.samples.iter().map(|s| of(s) as f64).collect::<Vec<_>>());
+        let speedup = ratio_interval(reference_ns, &self.render_ns())?;
         Some(Figures {
-            median_ns: median(&over(|sample| sample.render_ns).collect::<Vec<_>>())?,
-            prepare_ns: median(&over(|sample| sample.prepare_ns).collect::<Vec<_>>())?,
+            median_ns: median_of(|sample| sample.render_ns)?,
+            prepare_ns: median_of(|sample| sample.prepare_ns)?,
             speedup,
             efficiency: efficiency(speedup.median, self.threads),
             serial_fraction: karp_flatt(speedup.median, self.threads),
@@ -259,7 +263,7 @@ impl Protocol {
         }
 
         if rows[0].holds() {
-            let reference = rows[0].samples.clone();
+            let reference = rows[0].render_ns();
             for row in rows.iter_mut().filter(|row| row.holds()) {
                 row.figures = row.figures(&reference);
             }

@@ -50,6 +50,15 @@ pub fn median_interval(sample: &[f64]) -> Option<Interval> {
     Some(Interval { median, low: sorted[outside], high: sorted[sorted.len() - 1 - outside] })
 }
 
+/// The median of `above` over `below`, measured in the same rounds, with its interval; `None` without a
+/// round.
+#[must_use]
+pub fn ratio_interval(above: &[u64], below: &[u64]) -> Option<Interval> {
+    // A clock too coarse for the rendering must not make a ratio of 0 / 0.
+    let ratios = above.iter().zip(below).map(|(&a, &b)| a.max(1) as f64 / b.max(1) as f64);
+    median_interval(&ratios.collect::<Vec<_>>())
+}
+
 /// How much of `threads` threads a speed-up uses: 1 is all of it.
 #[must_use]
 pub fn efficiency(speedup: f64, threads: usize) -> f64 {

@@ -8,6 +8,7 @@
 pub mod accuracy;
 pub mod check;
 pub mod compare;
+mod csv;
 mod json;
 pub mod machine;
 mod style;

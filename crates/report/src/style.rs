@@ -1,6 +1,7 @@
 //! How tables look.
 
 use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
+use rayweave_measure::Interval;
 use std::ops::RangeInclusive;
 
 const STYLE: TableStyle = TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'));
@@ -22,4 +23,9 @@ pub(crate) fn table<const N: usize>(
         }
     }
     table.trim_fmt()
+}
+
+/// As in `1.84 [1.79, 1.90]`.
+pub(crate) fn interval(Interval { median, low, high }: Interval) -> String {
+    format!("{median:.2} [{low:.2}, {high:.2}]")
 }

@@ -22,14 +22,9 @@ impl Draw {
         Self { random }
     }
 
-    fn bits(&mut self) -> u64 {
-        self.random.next_u64()
-    }
-
     /// Evenly in `low..high`.
     pub(super) fn range(&mut self, low: f64, high: f64) -> f64 {
-        let fraction = (self.bits() >> 11) as f64 / (1_u64 << 53) as f64;
-        low + (high - low) * fraction
+        low + (high - low) * self.random.fraction()
     }
 
     /// In `low..high`, both above 0, every magnitude alike.
@@ -145,7 +140,7 @@ mod tests {
         let small = numbers.iter().filter(|&&number| number < 1.0).count();
         assert!((400..600).contains(&small), "{small} of 1000 below the geometric mean");
         assert!((0..1000).map(|_| draw.integer(-2, 2)).all(|number| (-2..=2).contains(&number)));
-        let first = |seed, family, index| Draw::new(seed, family, index).bits();
+        let first = |seed, family, index| Draw::new(seed, family, index).random.next_u64();
         assert_ne!(first(7, "sphere_far", 3), first(8, "sphere_far", 3));
         assert_ne!(first(7, "sphere_far", 3), first(7, "cyl_far", 3));
         assert_ne!(first(7, "sphere_far", 3), first(7, "sphere_far", 4));

@@ -23,13 +23,12 @@ pub(super) struct Parts(Vec<(&'static str, Scene)>);
 
 impl Parts {
     pub(super) fn of(scene: &Scene) -> Self {
-        let report = Setting::report(scene.render.max_reflections);
         let empty = Scene {
             planes: Vec::new(),
             spheres: Vec::new(),
             triangles: Vec::new(),
             cylinders: Vec::new(),
-            ..report.applied_to(scene)
+            ..scene.clone()
         };
         let parts = [
             ("planes", scene.planes.is_empty(), Scene { planes: scene.planes.clone(), ..empty.clone() }),
@@ -44,10 +43,12 @@ impl Parts {
         Self(parts.into_iter().filter(|part| !part.1).map(|(name, _, scene)| (name, scene)).collect())
     }
 
-    /// Each part in all arithmetics.
-    pub(super) fn subjects(&self) -> impl Iterator<Item = Subject> {
-        let of = |scene: &Scene| ARITHMETICS.map(|arithmetic| Subject::new(scene.clone(), arithmetic));
-        self.0.iter().flat_map(move |(_, scene)| of(scene))
+    /// Each part in all arithmetics, with the report's rays.
+    pub(super) fn subjects(&self) -> impl Iterator<Item = Subject<'_>> {
+        self.0.iter().flat_map(|(_, scene)| {
+            let report = Setting::report(scene.render.max_reflections);
+            ARITHMETICS.map(|arithmetic| Subject::new(scene, Setting { arithmetic, ..report }))
+        })
     }
 
     /// From the times of the settings, and after them those of [`Parts::subjects`].

@@ -1,8 +1,8 @@
 //! The picture that the others are measured against: the limit of the filter, nearly.
 
-use super::setting::EXACT;
-use crate::metrics::Difference;
-use rayweave_core::{Image, Sampling, Scene, Work, tracer};
+use super::setting::{EXACT, Setting};
+use crate::metrics::rmse;
+use rayweave_core::{Image, Sampling, Scene, Work};
 
 /// The truth, and how true it is.
 #[derive(Clone, Debug)]
@@ -17,9 +17,6 @@ pub struct Reference {
 /// Densities of the two halves, nearly equal: four patterns of samples that have nothing in common.
 const HALVES: [[u32; 2]; 2] = [[32, 29], [31, 30]];
 
-/// Primary rays a pixel in a reference picture.
-pub const RAYS_PER_PIXEL: u32 = 32 * 32 + 33 * 33 + 29 * 29 + 30 * 30 + 31 * 31 + 32 * 32 + 30 * 30 + 31 * 31;
-
 impl Reference {
     /// Of `scene` with all its bounces. `render` gives the picture of a work.
     ///
@@ -28,20 +25,28 @@ impl Reference {
     /// Those of `render`, and a scene that is not sound.
     pub fn new(
         scene: &Scene,
-        (width, height): (u32, u32),
+        size: (u32, u32),
         mut render: impl FnMut(&dyn Work) -> Result<Image, String>,
     ) -> Result<Self, String> {
         let mut picture = |density| {
-            let mut scene = scene.clone();
-            scene.render.sampling = Sampling::Importance;
-            scene.render.antialiasing = density;
-            render(&*tracer(&scene, width, height, EXACT).map_err(|e| e.to_string())?)
+            let setting = setting(density, scene.render.max_reflections);
+            render(&*setting.work(scene, size).map_err(|e| e.to_string())?)
         };
         let mut half = |[a, b]: [u32; 2]| Ok::<Image, String>(mean(&picture(a)?, &picture(b)?));
         let (first, second) = (half(HALVES[0])?, half(HALVES[1])?);
-        let uncertainty = Difference::between(&first, &second).rmse / 2.0;
+        let uncertainty = rmse(&first, &second) / 2.0;
         Ok(Self { picture: mean(&first, &second), uncertainty })
     }
+}
+
+/// Primary rays a pixel in a reference picture.
+#[must_use]
+pub fn reference_rays_per_pixel() -> u32 {
+    HALVES.as_flattened().iter().map(|&density| setting(density, 0).rays_per_pixel()).sum()
+}
+
+fn setting(antialiasing: u32, max_reflections: u32) -> Setting {
+    Setting { arithmetic: EXACT, sampling: Sampling::Importance, antialiasing, max_reflections }
 }
 
 fn mean(a: &Image, b: &Image) -> Image {

@@ -1,7 +1,7 @@
 //! The knobs that trade speed for error, and which positions of them are tried.
 
-use rayweave_core::scene::RenderSettings;
-use rayweave_core::{Arithmetic, Formulas, Precision, Sampling, Scene};
+use rayweave_core::scene::{RenderSettings, SceneError};
+use rayweave_core::{Arithmetic, Formulas, Precision, Sampling, Scene, Work, tracer};
 use std::fmt;
 
 /// One position of every knob.
@@ -70,14 +70,21 @@ impl Setting {
         RenderSettings { antialiasing, sampling, ..RenderSettings::default() }.rays_per_pixel()
     }
 
-    /// `scene` with this setting's knobs, those of the arithmetic aside.
-    #[must_use]
-    pub fn applied_to(&self, scene: &Scene) -> Scene {
+    /// The work of rendering `scene` with this setting into `width` x `height` pixels.
+    ///
+    /// # Errors
+    ///
+    /// A scene that is not sound.
+    pub fn work(
+        &self,
+        scene: &Scene,
+        (width, height): (u32, u32),
+    ) -> Result<Box<dyn Work + Send>, SceneError> {
         let mut scene = scene.clone();
         scene.render.sampling = self.sampling;
         scene.render.antialiasing = self.antialiasing;
         scene.render.max_reflections = self.max_reflections;
-        scene
+        tracer(&scene, width, height, self.arithmetic)
     }
 }
 

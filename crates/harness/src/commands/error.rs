@@ -7,14 +7,13 @@ use crate::picture::Format;
 use crate::{Outcome, print, progress};
 use clap::Args;
 use rayweave_accuracy::flip;
-use rayweave_accuracy::tradeoff::{EXACT, Experiment, Setting, Study};
-use rayweave_core::{Image, Plan, Scene, Work, tracer};
-use rayweave_measure::compare::{Entry, Executor};
-use rayweave_measure::{Machine, Protocol, Stopwatch};
+use rayweave_accuracy::tradeoff::{EXACT, Experiment, Setting, Study, timed};
+use rayweave_core::{Image, Plan, Scene, Work};
+use rayweave_measure::{Machine, Protocol};
 use rayweave_report::tradeoff::Report;
 use rayweave_scene_file::ImageSize;
 use std::fs;
-use std::num::{NonZeroU32, NonZeroUsize};
+use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -112,10 +111,7 @@ fn default_size(scene: &Scene, image: ImageSize) -> Result<(u32, u32), String> {
     let mut pixels = PIXELS;
     let pilot = shrunk(image, PIXELS / 4.0);
     let setting = Setting { arithmetic: EXACT, ..Setting::report(scene.render.max_reflections) };
-    let work = tracer(&setting.applied_to(scene), pilot.0, pilot.1, EXACT).map_err(|e| e.to_string())?;
-    let mut stopwatch = Stopwatch::new(&*work, pilot.0, pilot.1, TILE).map_err(|e| e.to_string())?;
-    let entry = Entry { strategy: rayweave_registry::reference(), threads: NonZeroUsize::MIN };
-    let nanoseconds = stopwatch.render(&entry)?.sample.render_ns as f64;
+    let nanoseconds = timed(rayweave_registry::reference(), &setting, scene, pilot)?.nanoseconds as f64;
     let per_ray = nanoseconds / (f64::from(pilot.0 * pilot.1 * setting.rays_per_pixel()));
     let rays: u32 = Setting::all(scene).iter().map(Setting::rays_per_pixel).sum();
     let area = |(width, height): (u32, u32)| f64::from(width) * f64::from(height);
@@ -156,10 +152,7 @@ fn write_pictures(folder: &Path, scene: &Scene, study: &Study, size: (u32, u32))
     let truth = &study.reference.picture;
     let own = study.report_row();
     for row in study.rows.iter().filter(|row| row.in_front || row.setting == own.setting) {
-        let scene = row.setting.applied_to(scene);
-        let (width, height) = size;
-        let work = tracer(&scene, width, height, row.setting.arithmetic).map_err(|e| e.to_string())?;
-        let picture = render(&*work, size)?;
+        let picture = render(&*row.setting.work(scene, size).map_err(|e| e.to_string())?, size)?;
         let name = row.setting.to_string().replace(", ", "-").replace(' ', "-");
         write(&format!("{name}.png"), &picture)?;
         write(&format!("{name}-difference.png"), &flip::picture(truth, &picture))?;

@@ -5,7 +5,7 @@ use crate::output::{PendingFile, distinct_files};
 use crate::{Outcome, print};
 use clap::{Args, ValueEnum};
 use rayweave_accuracy::kernel::{self, Prepared};
-use rayweave_accuracy::{Case, cases, outcomes, score};
+use rayweave_accuracy::{FamilyScore, cases, outcomes, score};
 use rayweave_core::{Arithmetic, Precision};
 use std::fs::File;
 use std::io::{self, BufReader, Write};
@@ -48,12 +48,16 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     };
     let arithmetic = Arithmetic { formulas: arguments.formulas.into(), precision };
 
-    let found: Vec<_> = cases.iter().map(|case| kernel::outcome(case, arithmetic)).collect();
+    let prepared: Vec<Prepared> = cases.iter().map(|case| Prepared::new(case, arithmetic)).collect();
+    let found: Vec<_> = prepared.iter().map(Prepared::outcome).collect();
     let mut lines = Vec::new();
     outcomes::write(&mut lines, &found).map_err(|e| format!("the results cannot be written: {e}"))?;
     let scores = score(&cases, &found);
-    let times: Vec<Option<f64>> =
-        scores.iter().map(|score| time(&cases, &score.family, arithmetic)).collect();
+    let time = |score: &FamilyScore| {
+        let family = cases.iter().zip(&prepared).filter(|(case, _)| case.family == score.family);
+        kernel::nanoseconds_per_ray(&family.map(|(_, prepared)| prepared).collect::<Vec<_>>())
+    };
+    let times: Vec<Option<f64>> = scores.iter().map(time).collect();
     let table = rayweave_report::accuracy::table(&scores, &times);
     match out {
         Some(file) => {
@@ -68,10 +72,4 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     }
     let wrong = scores.iter().any(|score| score.wrong > 0 || score.leaks > 0 || score.non_finite > 0);
     Ok(if wrong { Outcome::Failed } else { Outcome::Held })
-}
-
-/// Nanoseconds a ray of a family's cases.
-fn time(cases: &[Case], family: &str, arithmetic: Arithmetic) -> Option<f64> {
-    let cases = cases.iter().filter(|case| case.family == family);
-    kernel::nanoseconds_per_ray(&cases.map(|case| Prepared::new(case, arithmetic)).collect::<Vec<_>>())
 }

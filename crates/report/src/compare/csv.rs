@@ -1,6 +1,7 @@
 //! The comparison for spreadsheets: every line stands for itself.
 
 use super::{Report, threads_start};
+use crate::csv;
 use rayweave_measure::compare::{Role, Row};
 use serde::Serialize;
 
@@ -37,12 +38,7 @@ struct Line<'a> {
 }
 
 pub(super) fn text(report: &Report<'_>) -> String {
-    let mut writer = ::csv::Writer::from_writer(Vec::new());
-    for row in &report.comparison.rows {
-        writer.serialize(line(report, row)).expect("flat structures are CSV, and memory takes them");
-    }
-    let bytes = writer.into_inner().expect("memory takes everything");
-    String::from_utf8(bytes).expect("text in, text out")
+    csv::text(report.comparison.rows.iter().map(|row| line(report, row)))
 }
 
 fn line<'a>(report: &Report<'a>, row: &'a Row) -> Line<'a> {

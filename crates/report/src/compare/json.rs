@@ -1,7 +1,7 @@
 //! The comparison for other programs.
 
 use super::{Report, threads_start};
-use crate::json;
+use crate::json::{self, Ratio};
 use crate::machine::Facts;
 use rayweave_measure::compare::{Role, Row};
 use serde::Serialize;
@@ -36,20 +36,13 @@ struct Result<'a> {
     digest: Option<String>,
     median_ns: Option<u64>,
     samples_ns: Vec<u64>,
-    speedup: Option<Speedup>,
+    speedup: Option<Ratio>,
     efficiency: Option<f64>,
     serial_fraction: Option<f64>,
     threads_start: &'a str,
     prepare_ns: Option<u64>,
     prepare_samples_ns: Vec<u64>,
     error: Option<&'a str>,
-}
-
-#[derive(Serialize)]
-struct Speedup {
-    median: f64,
-    low: f64,
-    high: f64,
 }
 
 pub(super) fn text(report: &Report<'_>) -> String {
@@ -74,7 +67,6 @@ pub(super) fn text(report: &Report<'_>) -> String {
 
 fn result(row: &Row) -> Result<'_> {
     let figures = row.figures.as_ref();
-    let speedup = figures.map(|figures| figures.speedup);
     Result {
         strategy: row.strategy,
         threads: row.threads,
@@ -83,7 +75,7 @@ fn result(row: &Row) -> Result<'_> {
         digest: row.digest.map(|digest| digest.to_string()),
         median_ns: figures.map(|figures| figures.median_ns.round() as u64),
         samples_ns: row.samples.iter().map(|sample| sample.render_ns).collect(),
-        speedup: speedup.map(|s| Speedup { median: s.median, low: s.low, high: s.high }),
+        speedup: figures.map(|figures| figures.speedup.into()),
         efficiency: figures.map(|figures| figures.efficiency),
         serial_fraction: figures.and_then(|figures| figures.serial_fraction),
         threads_start: threads_start(row),

@@ -69,10 +69,7 @@ fn cells(row: &Row) -> [String; HEADER.len()] {
         format!("{}{control}", row.strategy),
         row.threads.to_string(),
         figure(figures.map(|f| milliseconds(f.median_ns))),
-        figure(figures.map(|f| {
-            let speedup = f.speedup;
-            format!("{:.2} [{:.2}, {:.2}]", speedup.median, speedup.low, speedup.high)
-        })),
+        figure(figures.map(|f| style::interval(f.speedup))),
         figure(figures.map(|f| format!("{:.0} %", f.efficiency * 100.0))),
         figure(figures.and_then(|f| f.serial_fraction).map(|fraction| format!("{fraction:.3}"))),
         figure(start),

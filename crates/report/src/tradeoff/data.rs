@@ -1,10 +1,10 @@
 //! The study for other programs: what a result is, is said once, for JSON and CSV.
 
 use super::Report;
-use crate::json;
+use crate::csv;
+use crate::json::{self, Ratio};
 use crate::machine::Facts;
-use rayweave_accuracy::tradeoff::{Cost, RAYS_PER_PIXEL, Row};
-use rayweave_measure::Interval;
+use rayweave_accuracy::tradeoff::{Cost, Row, reference_rays_per_pixel};
 use serde::Serialize;
 
 /// It changes when a key changes its meaning or goes.
@@ -67,13 +67,6 @@ struct CostEntry {
     f64_over_f32_robust: Ratio,
 }
 
-#[derive(Serialize)]
-struct Ratio {
-    median: f64,
-    low: f64,
-    high: f64,
-}
-
 pub(super) fn json(report: &Report<'_>) -> String {
     let study = report.study;
     let with_samples = |row| ResultWithSamples { result: entry(row), samples_ns: &row.samples_ns };
@@ -84,19 +77,17 @@ pub(super) fn json(report: &Report<'_>) -> String {
         height: report.height,
         rounds: study.rounds,
         machine: Facts::new(report.machine),
-        reference: Reference { rays_per_pixel: RAYS_PER_PIXEL, rmse_estimate: study.reference.uncertainty },
+        reference: Reference {
+            rays_per_pixel: reference_rays_per_pixel(),
+            rmse_estimate: study.reference.uncertainty,
+        },
         results: study.rows.iter().map(with_samples).collect(),
         costs: study.costs.iter().map(cost).collect(),
     })
 }
 
 pub(super) fn csv(report: &Report<'_>) -> String {
-    let mut writer = ::csv::Writer::from_writer(Vec::new());
-    for row in &report.study.rows {
-        writer.serialize(entry(row)).expect("flat structures are CSV, and memory takes them");
-    }
-    let bytes = writer.into_inner().expect("memory takes everything");
-    String::from_utf8(bytes).expect("text in, text out")
+    csv::text(report.study.rows.iter().map(entry))
 }
 
 fn entry(row: &Row) -> Entry {
@@ -126,12 +117,8 @@ fn entry(row: &Row) -> Entry {
 fn cost(cost: &Cost) -> CostEntry {
     CostEntry {
         part: cost.part,
-        robust_over_textbook_f32: ratio(cost.robust_f32),
-        robust_over_textbook_f64: ratio(cost.robust_f64),
-        f64_over_f32_robust: ratio(cost.f64_robust),
+        robust_over_textbook_f32: cost.robust_f32.into(),
+        robust_over_textbook_f64: cost.robust_f64.into(),
+        f64_over_f32_robust: cost.f64_robust.into(),
     }
-}
-
-fn ratio(Interval { median, low, high }: Interval) -> Ratio {
-    Ratio { median, low, high }
 }

@@ -1,10 +1,10 @@
 //! The study for people.
 
 use super::{Report, sampling_name};
-use crate::{machine, style};
+use crate::machine;
+use crate::style::{self, interval};
 use rayweave_accuracy::metrics::psnr;
-use rayweave_accuracy::tradeoff::{Cost, RAYS_PER_PIXEL, Row};
-use rayweave_measure::Interval;
+use rayweave_accuracy::tradeoff::{Cost, Row, reference_rays_per_pixel};
 
 const HEADER: [&str; 14] = [
     "",
@@ -100,11 +100,12 @@ fn notes(report: &Report<'_>) -> String {
         "A TIMED PICTURE CHANGED FROM ONE ROUND TO ANOTHER."
     };
     format!(
-        "*: on the Pareto front. PSNR and what follows: against robust f64 with {RAYS_PER_PIXEL} rays a pixel,\n\
+        "*: on the Pareto front. PSNR and what follows: against robust f64 with {} rays a pixel,\n\
          {verdict}.\n\
          arithmetic: against the same rays in robust f64. sampling: what is left in robust f64 with all bounces.\n\
          Edges make most of the error, and a picture twice as large has half as many of them a pixel: its PSNR\n\
-         is some 3 dB higher. Settings whose intervals overlap may change places in another run. {repeatable}"
+         is some 3 dB higher. Settings whose intervals overlap may change places in another run. {repeatable}",
+        reference_rays_per_pixel()
     )
 }
 
@@ -144,10 +145,6 @@ fn milliseconds(nanoseconds: f64) -> String {
     let milliseconds = nanoseconds / 1e6;
     let digits = if milliseconds < 10.0 { 2 } else { usize::from(milliseconds < 100.0) };
     format!("{milliseconds:.digits$}")
-}
-
-fn interval(Interval { median, low, high }: Interval) -> String {
-    format!("{median:.2} [{low:.2}, {high:.2}]")
 }
 
 fn decibels(psnr: f64) -> String {
