@@ -17,10 +17,11 @@ material is the number of its row, from 0.
     triangles N  a.xyz b.xyz c.xyz material
     cylinders N  bottom.xyz top.y radius material
 
-Meshes are refused. What a value may be is not checked here beyond the names of keys: the program
-that draws the scene files proper does that, with line numbers.
+The triangles of meshes come after the scene's own. What a value may be is not checked here beyond
+the names of keys: the program that draws the scene files proper does that, with line numbers.
 """
 
+import os
 import sys
 import tomllib
 
@@ -43,7 +44,8 @@ PRIMITIVES = {
     "triangle": ["vertices", "material"],
     "cylinder": ["bottom", "top", "radius", "material"],
 }
-TABLES = ["image", "camera", "render", "light", "material", *PRIMITIVES]
+MESH = dict.fromkeys(["path", "material"], REQUIRED)
+TABLES = ["image", "camera", "render", "light", "material", "mesh", *PRIMITIVES]
 
 
 class SceneError(Exception):
@@ -63,45 +65,90 @@ def filled(table, keys, where):
     return values
 
 
+def obj_triangles(path):
+    """The triangles of a Wavefront OBJ file: polygons as fans, those without area left out."""
+    vertices, triangles = [], []
+    with open(path, encoding="utf-8", errors="replace") as file:
+        for line, text in enumerate(file, 1):
+            words = text.partition("#")[0].split()
+            try:
+                if words[:1] == ["v"]:
+                    x, y, z = words[1:4]
+                    vertices.append((float(x), float(y), float(z)))
+                elif words[:1] == ["f"]:
+                    numbers = [int(word.partition("/")[0]) for word in words[1:]]
+                    if len(numbers) < 3 or not all(1 <= abs(n) <= len(vertices) for n in numbers):
+                        raise ValueError
+                    first, *rest = [vertices[n - 1 if n > 0 else n] for n in numbers]
+                    triangles.extend(fan for b, c in zip(rest, rest[1:]) if has_area(fan := (first, b, c)))
+            except ValueError:
+                raise SceneError(f"{path}:{line}: {text.strip()} is no vertex, or no face of vertices above it") from None
+    if not triangles:
+        raise SceneError(f"{path}: no triangle")
+    return triangles
+
+
+def has_area(triangle):
+    (ax, ay, az), (bx, by, bz), (cx, cy, cz) = triangle
+    ux, uy, uz, vx, vy, vz = bx - ax, by - ay, bz - az, cx - ax, cy - ay, cz - az
+    return uy * vz != uz * vy or uz * vx != ux * vz or ux * vy != uy * vx
+
+
+def sections(scene, folder="."):
+    """The scene as the text's sections: name to values or rows, materials as numbers, meshes read from `folder`."""
+    if unknown := [key for key in scene if key not in TABLES]:
+        raise SceneError(f"unknown key {unknown[0]}")
+    if "camera" not in scene:
+        raise SceneError("camera is missing")
+
+    parts = {}
+    for name, keys in [("image", IMAGE), ("camera", CAMERA), ("render", RENDER)]:
+        parts[name] = filled(scene.get(name, {}), keys, name)
+    parts["lights"] = [filled(light, LIGHT, f"light {i}") for i, light in enumerate(scene.get("light", []), 1)]
+    materials = scene.get("material", {})
+    parts["materials"] = [filled(material, MATERIAL, f"material {name}") for name, material in materials.items()]
+
+    index = {name: i for i, name in enumerate(materials)}
+
+    def rows(kind, keys):
+        for i, table in enumerate(scene.get(kind, []), 1):
+            *shape, material = filled(table, keys, f"{kind} {i}")
+            if material not in index:
+                raise SceneError(f"{kind} {i}: no material {material}")
+            yield [*shape, index[material]]
+
+    for kind, keys in PRIMITIVES.items():
+        parts[f"{kind}s"] = list(rows(kind, dict.fromkeys(keys, REQUIRED)))
+    for path, material in rows("mesh", MESH):
+        triangles = obj_triangles(os.path.join(folder, path))
+        parts["triangles"].extend([triangle, material] for triangle in triangles)
+    return parts
+
+
+def read_scene(path):
+    with open(path, "rb") as file:
+        return sections(tomllib.load(file), os.path.dirname(path))
+
+
 def numbers(value):
     """The numbers of a value, nested lists flattened, as text that reads back to the same number."""
-    if isinstance(value, list):
+    if isinstance(value, (list, tuple)):
         return [text for item in value for text in numbers(item)]
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise SceneError(f"expected a number, got {value!r}")
     return [repr(value)]
 
 
-def scene_to_text(scene):
-    if "mesh" in scene:
-        raise SceneError("meshes are not supported")
-    if unknown := [key for key in scene if key not in TABLES]:
-        raise SceneError(f"unknown key {unknown[0]}")
-    if "camera" not in scene:
-        raise SceneError("camera is missing")
-
+def scene_to_text(parts):
     lines = []
-    for name, keys in [("image", IMAGE), ("camera", CAMERA), ("render", RENDER)]:
-        lines.append(" ".join([name, *numbers(filled(scene.get(name, {}), keys, name))]))
-
-    lights = [filled(light, LIGHT, f"light {i}") for i, light in enumerate(scene.get("light", []), 1)]
-    materials = scene.get("material", {})
-    rows = [filled(material, MATERIAL, f"material {name}") for name, material in materials.items()]
-    for name, values in [("lights", lights), ("materials", rows)]:
+    for name, values in parts.items():
+        if name in ("image", "camera", "render"):
+            lines.append(" ".join([name, *numbers(values)]))
+            continue
         lines.append(f"{name} {len(values)}")
+        if name == "cylinders":
+            values = [[bottom, top[1], radius, material] for bottom, top, radius, material in values]
         lines.extend(" ".join(numbers(row)) for row in values)
-
-    index = {name: i for i, name in enumerate(materials)}
-    for kind, keys in PRIMITIVES.items():
-        tables = scene.get(kind, [])
-        lines.append(f"{kind}s {len(tables)}")
-        for i, table in enumerate(tables, 1):
-            *shape, material = filled(table, dict.fromkeys(keys, REQUIRED), f"{kind} {i}")
-            if material not in index:
-                raise SceneError(f"{kind} {i}: no material {material}")
-            if kind == "cylinder":
-                shape[1] = shape[1][1]
-            lines.append(" ".join([*numbers(shape), str(index[material])]))
     return "\n".join(lines) + "\n"
 
 
@@ -110,8 +157,7 @@ def main(arguments):
         print(__doc__, file=sys.stderr)
         return 2
     try:
-        with open(arguments[0], "rb") as file:
-            text = scene_to_text(tomllib.load(file))
+        text = scene_to_text(read_scene(arguments[0]))
         if len(arguments) == 2:
             with open(arguments[1], "w", encoding="ascii") as out:
                 out.write(text)

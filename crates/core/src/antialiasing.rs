@@ -1,8 +1,11 @@
 //! The filter `exp(-(dx^2 + dy^2) / 0.64)` over the square out to one pixel from a pixel's centre, as
 //! a sum over samples. It is the product of the same function of each coordinate.
 
+use crate::image::Rgb;
 use crate::lane::Scalar;
+use crate::samples::Colors;
 use crate::scene::{RenderSettings, Sampling};
+use crate::vector::Vector;
 
 /// The samples of a pixel, row by row: the same around every pixel's centre.
 #[derive(Clone, Debug)]
@@ -10,6 +13,8 @@ pub(crate) struct Filter<S> {
     rows: Vec<Row<S>>,
     /// The unit of places: so many half steps are half a pixel.
     density: u32,
+    /// Of each sample across a pixel, if the samples are on a square lattice.
+    lattice: Option<Vec<S>>,
 }
 
 /// Samples of one height.
@@ -44,8 +49,38 @@ impl<S: Scalar> Filter<S> {
         self.density
     }
 
-    pub(crate) fn rows(&self) -> &[Row<S>] {
-        &self.rows
+    /// The weights of the `2 s + 1` samples across a pixel, for samples on a square lattice, which neighbouring
+    /// pixels share.
+    pub(crate) fn lattice_weights(&self) -> Option<&[S]> {
+        self.lattice.as_deref()
+    }
+
+    /// Samples a pixel.
+    pub(crate) fn len(&self) -> usize {
+        self.rows.iter().map(|row| row.samples.len()).sum()
+    }
+
+    /// Right and down of each sample, row by row.
+    pub(crate) fn places(&self) -> impl Iterator<Item = (S, S)> {
+        self.rows.iter().flat_map(|row| row.samples.iter().map(|sample| (sample.right, row.down)))
+    }
+
+    /// The pixel whose samples' colours begin at number `first`.
+    ///
+    /// Each row of samples is summed from the left, then the rows from the top: a fixed order, and
+    /// one in which a row's sum serves every pixel that needs it.
+    pub(crate) fn sum(&self, colors: &Colors<S>, first: usize) -> Rgb {
+        let mut i = first;
+        let mut color = Vector::zero();
+        for row in &self.rows {
+            let mut row_color = Vector::zero();
+            for sample in &row.samples {
+                row_color = row_color + colors.get(i) * sample.weight;
+                i += 1;
+            }
+            color = color + row_color * row.weight;
+        }
+        [color.x.to_f32(), color.y.to_f32(), color.z.to_f32()]
     }
 
     /// `(2 s + 1)^2` samples of a square lattice with `s` steps a pixel. Places are whole numbers of
@@ -61,7 +96,8 @@ impl<S: Scalar> Filter<S> {
             .collect();
         let row =
             |sample: &Sample<S>| Row { down: sample.right, weight: sample.weight, samples: samples.clone() };
-        Self { rows: samples.iter().map(row).collect(), density }
+        let lattice = samples.iter().map(|sample| sample.weight).collect();
+        Self { rows: samples.iter().map(row).collect(), density, lattice: Some(lattice) }
     }
 
     /// `count` samples of equal weight, as dense as the filter is high (filter importance sampling:
@@ -86,7 +122,7 @@ impl<S: Scalar> Filter<S> {
                 samples: vec![Sample { right: half_pixels(column), weight: S::from_f64(1.0) }],
             }
         };
-        Self { rows: (0..u64::from(count)).map(row).collect(), density: 1 }
+        Self { rows: (0..u64::from(count)).map(row).collect(), density: 1, lattice: None }
     }
 }
 
@@ -136,10 +172,10 @@ mod tests {
             for sampling in [Sampling::Lattice, Sampling::Importance] {
                 let settings = RenderSettings { antialiasing, sampling, ..RenderSettings::default() };
                 let filter = Filter::<f64>::new(&settings);
-                let rows = filter.rows().iter();
+                let rows = filter.rows.iter();
                 let sum: f64 = rows.map(|r| r.weight * r.samples.iter().map(|s| s.weight).sum::<f64>()).sum();
                 assert!((sum - 1.0).abs() < 1e-13, "{sampling:?} {antialiasing}: {sum}");
-                let count: usize = filter.rows().iter().map(|row| row.samples.len()).sum();
+                let count: usize = filter.rows.iter().map(|row| row.samples.len()).sum();
                 assert_eq!(count, settings.rays_per_pixel() as usize, "{sampling:?} {antialiasing}");
             }
         }

@@ -285,6 +285,19 @@ impl<'a> Tile<'a> {
         self.area
     }
 
+    /// The pixels of row `y`, counted from the tile's top.
+    ///
+    /// # Panics
+    ///
+    /// Unless `y` is below the tile's height.
+    #[must_use]
+    pub fn row_mut(&mut self, y: usize) -> &mut [Rgb] {
+        match &mut self.rows {
+            Rows::One(row) => std::slice::from_mut(row)[y],
+            Rows::Many(rows) => rows[y],
+        }
+    }
+
     /// The rows from the top, each with its y and its pixels from the left.
     pub fn rows(&mut self) -> impl Iterator<Item = (u32, &mut [Rgb])> {
         let rows = match &mut self.rows {

@@ -33,6 +33,23 @@ pub trait Lane:
     type Mask: Mask;
     /// One index a lane: of a primitive, or an exponent.
     type Index: Copy;
+    /// How many numbers there are.
+    const LANES: usize;
+
+    /// The first `LANES` numbers of `numbers`.
+    ///
+    /// # Panics
+    ///
+    /// If there are fewer.
+    fn load(numbers: &[Self::Scalar]) -> Self;
+    /// Overwrites the first `LANES` numbers of `numbers`.
+    ///
+    /// # Panics
+    ///
+    /// If there are fewer.
+    fn store(self, numbers: &mut [Self::Scalar]);
+    /// True in the first `count` lanes.
+    fn first_lanes(count: usize) -> Self::Mask;
 
     /// The same number in every lane.
     fn splat(x: Self::Scalar) -> Self;
@@ -63,6 +80,8 @@ pub trait Lane:
     fn first_index(mask: Self::Mask, indices: Self::Index) -> Option<u32>;
     /// The lanes that hold `index`.
     fn index_equals(indices: Self::Index, index: u32) -> Self::Mask;
+    /// The lanes that hold an index above `index`.
+    fn index_above(indices: Self::Index, index: u32) -> Self::Mask;
 
     /// The number of the source text in every lane.
     #[inline(always)]
@@ -72,7 +91,11 @@ pub trait Lane:
 }
 
 /// A lane of one: the types in which a scene is stored.
-pub trait Scalar: Lane<Scalar = Self, Mask = bool, Index = u32> + Send + Sync + 'static {
+pub trait Scalar: Lane<Scalar = Self, Mask = bool, Index = u32> + Default + Send + Sync + 'static {
+    /// As many as fill 256 bits.
+    type Wide256: Lane<Scalar = Self>;
+    /// As many as fill 512 bits.
+    type Wide512: Lane<Scalar = Self>;
     /// Unit roundoff `u`: the largest relative error of one rounded operation.
     const ROUNDOFF: f64;
     /// `2^s + 1`, where `s` is half of the digits, rounded up: it splits a number into halves.
@@ -94,12 +117,25 @@ impl Mask for bool {
 }
 
 macro_rules! scalar {
-    ($float:ident, splitter $splitter:literal) => {
+    ($float:ident, $wide256:ident, $wide512:ident, splitter $splitter:literal) => {
         impl Lane for $float {
             type Scalar = Self;
             type Mask = bool;
             type Index = u32;
+            const LANES: usize = 1;
 
+            #[inline(always)]
+            fn load(numbers: &[Self]) -> Self {
+                numbers[0]
+            }
+            #[inline(always)]
+            fn store(self, numbers: &mut [Self]) {
+                numbers[0] = self;
+            }
+            #[inline(always)]
+            fn first_lanes(count: usize) -> bool {
+                count > 0
+            }
             #[inline(always)]
             fn splat(x: Self) -> Self {
                 x
@@ -152,9 +188,15 @@ macro_rules! scalar {
             fn index_equals(a: u32, b: u32) -> bool {
                 a == b
             }
+            #[inline(always)]
+            fn index_above(a: u32, b: u32) -> bool {
+                a > b
+            }
         }
 
         impl Scalar for $float {
+            type Wide256 = wide::$wide256;
+            type Wide512 = wide::$wide512;
             const ROUNDOFF: f64 = $float::EPSILON as f64 / 2.0;
             const SPLITTER: f64 = $splitter;
 
@@ -174,8 +216,8 @@ macro_rules! scalar {
     };
 }
 
-scalar!(f32, splitter 4097.0);
-scalar!(f64, splitter 134217729.0);
+scalar!(f32, f32x8, f32x16, splitter 4097.0);
+scalar!(f64, f64x4, f64x8, splitter 134217729.0);
 
 /// `a b - c d` with its sign right (and zero only if it is zero), barring under- and overflow.
 ///

@@ -80,7 +80,17 @@ impl Lane for Quad {
     type Scalar = f32;
     type Mask = QuadMask;
     type Index = [u32; 4];
+    const LANES: usize = 4;
 
+    fn load(numbers: &[f32]) -> Self {
+        Self(from_fn(|i| numbers[i]))
+    }
+    fn store(self, numbers: &mut [f32]) {
+        numbers[..4].copy_from_slice(&self.0);
+    }
+    fn first_lanes(count: usize) -> QuadMask {
+        QuadMask(from_fn(|i| i < count))
+    }
     fn splat(x: f32) -> Self {
         Self([x; 4])
     }
@@ -119,6 +129,9 @@ impl Lane for Quad {
     }
     fn index_equals(indices: [u32; 4], index: u32) -> QuadMask {
         QuadMask(indices.map(|i| i == index))
+    }
+    fn index_above(indices: [u32; 4], index: u32) -> QuadMask {
+        QuadMask(indices.map(|i| i > index))
     }
 }
 

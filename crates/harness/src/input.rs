@@ -1,10 +1,10 @@
 //! From the options to a scene that is ready to be rendered.
 
-use crate::options::{PrecisionOption, SceneOptions};
+use crate::options::{PrecisionOption, SceneOptions, SwitchOption};
 use rayweave_core::image::ImageError;
 use rayweave_core::precision::Demand;
 use rayweave_core::scene::RenderSettings;
-use rayweave_core::{Arithmetic, Image, Precision, Scene, Work, tracer};
+use rayweave_core::{Arithmetic, Execution, Image, Precision, Scene, Work, tracer};
 use rayweave_scene_file::{self as scene_file, SceneFile};
 use std::path::Path;
 
@@ -25,7 +25,7 @@ pub struct Input {
     pub width: u32,
     /// In pixels.
     pub height: u32,
-    pub arithmetic: Arithmetic,
+    pub execution: Execution,
     /// Why this precision.
     pub reason: String,
 }
@@ -45,12 +45,14 @@ impl Input {
             PrecisionOption::F64 => (Precision::F64, "as asked for".to_owned()),
         };
         let arithmetic = Arithmetic { formulas: options.formulas.into(), precision };
-        Ok(Self { name, scene, width, height, arithmetic, reason })
+        let share_samples = options.share_samples == SwitchOption::On;
+        let execution = Execution { arithmetic, lanes: options.lanes.into(), share_samples };
+        Ok(Self { name, scene, width, height, execution, reason })
     }
 
     /// The work of rendering the scene at this size.
     pub fn work(&self, width: u32, height: u32) -> Result<Box<dyn Work + Send>, String> {
-        tracer(&self.scene, width, height, self.arithmetic).map_err(|e| format!("{}: {e}", self.name))
+        tracer(&self.scene, width, height, self.execution).map_err(|e| format!("{}: {e}", self.name))
     }
 
     /// A black picture of the size asked for.
@@ -68,7 +70,7 @@ impl Input {
 
     /// Formulas, precision and its reason.
     pub fn arithmetic_line(&self) -> String {
-        let Arithmetic { formulas, precision } = self.arithmetic;
+        let Arithmetic { formulas, precision } = self.execution.arithmetic;
         format!("arithmetic: {formulas} formulas in {precision}; {}", self.reason)
     }
 }

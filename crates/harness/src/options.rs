@@ -2,7 +2,7 @@
 
 use clap::{Args, ValueEnum};
 use rayweave_core::scene::MAX_ANTIALIASING;
-use rayweave_core::{Formulas, Sampling, Strategy};
+use rayweave_core::{Formulas, Lanes, Sampling, Strategy};
 use rayweave_registry::STRATEGIES;
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::thread::available_parallelism;
@@ -32,9 +32,12 @@ pub struct SceneOptions {
     /// Formulas of the tracer
     #[arg(long, value_enum, default_value_t)]
     pub formulas: FormulasOption,
-    /// Numbers computed side by side; this version computes them one by one
+    /// Rays followed side by side, in f32; in f64 half as many
     #[arg(long, value_enum, default_value_t)]
     pub lanes: LanesOption,
+    /// Whether lattice points that neighbouring pixels of a tile need are traced once
+    #[arg(long, value_enum, default_value_t)]
+    pub share_samples: SwitchOption,
 }
 
 /// Where the samples of a pixel lie.
@@ -69,15 +72,31 @@ pub enum FormulasOption {
     Robust,
 }
 
-/// How many numbers an instruction computes.
+/// How many rays are followed side by side.
 #[derive(Clone, Copy, Default, ValueEnum)]
 pub enum LanesOption {
-    /// The best there is
+    /// The fastest here
     #[default]
     Auto,
     /// One by one
     #[value(name = "1")]
     One,
+    /// As many as fill 256 bits
+    #[value(name = "8")]
+    Wide256,
+    /// As many as fill 512 bits
+    #[value(name = "16")]
+    Wide512,
+}
+
+/// What may be left out for comparison.
+#[derive(Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+pub enum SwitchOption {
+    /// With it
+    #[default]
+    On,
+    /// Without it
+    Off,
 }
 
 /// The size of the tiles.
@@ -93,6 +112,17 @@ impl From<FormulasOption> for Formulas {
         match option {
             FormulasOption::Textbook => Self::Textbook,
             FormulasOption::Robust => Self::Robust,
+        }
+    }
+}
+
+impl From<LanesOption> for Lanes {
+    fn from(option: LanesOption) -> Self {
+        match option {
+            LanesOption::Auto => Self::default(),
+            LanesOption::One => Self::One,
+            LanesOption::Wide256 => Self::Wide256,
+            LanesOption::Wide512 => Self::Wide512,
         }
     }
 }

@@ -108,6 +108,16 @@ impl Problem {
         Self::at(span.start, message)
     }
 
+    /// The same fault, but of a text that is preceded by `start` bytes.
+    pub(crate) fn after(self, start: usize) -> Self {
+        Self { offset: self.offset.map(|offset| offset + start), ..self }
+    }
+
+    /// The same fault with a hint.
+    pub(crate) fn adding(self, hint: &str) -> Self {
+        Self { message: format!("{}; {hint}", self.message), ..self }
+    }
+
     /// The error to report about `text`, the contents of the file called `name`.
     pub(crate) fn within(self, text: &str, name: &str) -> SceneFileError {
         SceneFileError {
@@ -115,6 +125,35 @@ impl Problem {
             position: self.offset.map(|offset| Position::of(offset, text)),
             key: self.key,
             message: phrase::escaped(&self.message),
+        }
+    }
+}
+
+/// Why a scene is refused: for a fault of its own text, or of a file that it names.
+#[derive(Debug)]
+pub(crate) enum Refusal {
+    Here(Problem),
+    There(SceneFileError),
+}
+
+impl From<Problem> for Refusal {
+    fn from(problem: Problem) -> Self {
+        Self::Here(problem)
+    }
+}
+
+impl From<SceneFileError> for Refusal {
+    fn from(error: SceneFileError) -> Self {
+        Self::There(error)
+    }
+}
+
+impl Refusal {
+    /// The error to report about the scene whose text and name these are.
+    pub(crate) fn within(self, text: &str, name: &str) -> SceneFileError {
+        match self {
+            Self::Here(problem) => problem.within(text, name),
+            Self::There(error) => error,
         }
     }
 }

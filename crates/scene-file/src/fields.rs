@@ -31,9 +31,18 @@ impl fmt::Display for Path<'_> {
     }
 }
 
+/// Text that was parsed by itself, and where in the file it begins.
+#[derive(Clone, Copy)]
+pub(crate) struct Source<'a> {
+    /// The text, to which spans refer.
+    pub(crate) text: &'a str,
+    /// The bytes of the file before it.
+    pub(crate) start: usize,
+}
+
 /// The keys of one table: the document, `[camera]`, one `[[sphere]]`.
 pub(crate) struct Fields<'a> {
-    text: &'a str,
+    source: Source<'a>,
     path: Path<'a>,
     /// The table's header, or its key or braces where it has none.
     span: Range<usize>,
@@ -42,15 +51,20 @@ pub(crate) struct Fields<'a> {
 
 /// One value of a table or of an array.
 pub(crate) struct Field<'a> {
-    text: &'a str,
+    source: Source<'a>,
     path: Path<'a>,
     value: &'a Spanned<DeValue<'a>>,
 }
 
 impl<'a> Fields<'a> {
-    /// The keys of the whole document.
-    pub(crate) fn of_document(text: &'a str, table: &'a DeTable<'a>) -> Self {
-        Self { text, path: Path::Document, span: 0..0, table }
+    /// The keys at the top of the document that `source` is.
+    pub(crate) fn of_document(source: Source<'a>, table: &'a DeTable<'a>) -> Self {
+        Self { source, path: Path::Document, span: 0..0, table }
+    }
+
+    /// A complaint about `key` of this table, which starts at `offset` of the source.
+    fn problem(&self, offset: usize, key: &str, message: String) -> Problem {
+        Problem::of_key(self.source.start + offset, Path::Key(&self.path, key).to_string(), message)
     }
 
     /// Refuses the first key in the file that is not among `known`.
@@ -59,21 +73,18 @@ impl<'a> Fields<'a> {
         let Some(key) = unknown.min_by_key(|key| key.span().start) else { return Ok(()) };
         let name = key.get_ref();
         let message = format!("unknown key; {}", phrase::instead(name, known.iter().copied()));
-        Err(Problem::of_key(key.span().start, Path::Key(&self.path, name).to_string(), message))
+        Err(self.problem(key.span().start, name, message))
     }
 
     /// The value of `key`, if there is one.
     pub(crate) fn get<'s>(&'s self, key: &'s str) -> Option<Field<'s>> {
         let value = self.table.get(key)?;
-        Some(Field { text: self.text, path: Path::Key(&self.path, key), value })
+        Some(Field { source: self.source, path: Path::Key(&self.path, key), value })
     }
 
     /// The value of `key`, whatever its type.
     pub(crate) fn field<'s>(&'s self, key: &'s str) -> Result<Field<'s>, Problem> {
-        self.get(key).ok_or_else(|| {
-            let path = Path::Key(&self.path, key).to_string();
-            Problem::of_key(self.span.start, path, "missing, but required".into())
-        })
+        self.get(key).ok_or_else(|| self.problem(self.span.start, key, "missing, but required".into()))
     }
 
     /// The value of `key`.
@@ -86,37 +97,50 @@ impl<'a> Fields<'a> {
         self.get(key).map_or(Ok(default), |field| T::read(&field))
     }
 
-    /// What `read` makes of every `[[key]]`, in file order; nothing without the key.
+    /// Appends to `entries` what `read` makes of every `[[key]]`, in file order.
     pub(crate) fn each<T>(
         &self,
         key: &str,
+        entries: &mut Vec<T>,
         mut read: impl FnMut(&Fields) -> Result<T, Problem>,
-    ) -> Result<Vec<T>, Problem> {
-        let Some(field) = self.get(key) else { return Ok(Vec::new()) };
+    ) -> Result<(), Problem> {
+        let Some(field) = self.get(key) else { return Ok(()) };
         let DeValue::Array(items) = field.value.get_ref() else {
             return Err(field.expected(&format!("any number of [[{}]]", field.path)));
         };
-        items.iter().enumerate().map(|(i, item)| read(&field.item(i, item).table()?)).collect()
+        entries.reserve(items.len());
+        for item in items.iter() {
+            // Entries count from the beginning of the file, not of this part of it.
+            entries.push(read(&field.item(entries.len(), item).table()?)?);
+        }
+        Ok(())
     }
 
     /// Every key of this table with its value, for tables whose keys are names.
     pub(crate) fn iter(&self) -> impl Iterator<Item = (&str, Field<'_>)> {
         self.table.iter().map(|(key, value)| {
             let name = key.get_ref().as_ref();
-            (name, Field { text: self.text, path: Path::Key(&self.path, name), value })
+            (name, Field { source: self.source, path: Path::Key(&self.path, name), value })
         })
+    }
+
+    /// The complaint that `key`, which is here, stands further up in the file as well: in the words
+    /// of the TOML parser, which sees only one of them.
+    pub(crate) fn duplicate(&self, key: &str) -> Problem {
+        let offset = self.table.get_key_value(key).map_or(self.span.start, |(key, _)| key.span().start);
+        let message = format!("not valid TOML: duplicate key, found `{}`", phrase::shortened(key));
+        Problem::at(self.source.start + offset, message)
     }
 
     /// Gives the entry that was read from these keys, or the fault that `check` found in it a place.
     pub(crate) fn checked<T>(&self, entry: T, check: impl Fn(&T) -> Result<(), Fault>) -> Result<T, Problem> {
         check(&entry).map(|()| entry).map_err(|fault| {
-            let path = Path::Key(&self.path, fault.key).to_string();
             // As it is written in the file; a default is not, and stands for its table.
             let (offset, found) = match self.get(fault.key) {
-                Some(field) => (field.value.span().start, field.source()),
+                Some(field) => (field.value.span().start, field.written()),
                 None => (self.span.start, fault.found),
             };
-            Problem::of_key(offset, path, format!("expected {}, found {found}", fault.expected))
+            self.problem(offset, fault.key, format!("expected {}, found {found}", fault.expected))
         })
     }
 }
@@ -126,7 +150,7 @@ impl<'a> Field<'a> {
     pub(crate) fn table(&self) -> Result<Fields<'_>, Problem> {
         match self.value.get_ref() {
             DeValue::Table(table) => {
-                Ok(Fields { text: self.text, path: self.path, span: self.value.span(), table })
+                Ok(Fields { source: self.source, path: self.path, span: self.value.span(), table })
             }
             _ if matches!(self.path, Path::Index(..)) => Err(self.expected("a table")),
             _ => Err(self.expected(&format!("one table [{}]", self.path))),
@@ -140,7 +164,7 @@ impl<'a> Field<'a> {
 
     /// The complaint that this value is not what it should be, with its type where that matters.
     pub(crate) fn expected(&self, expected: &str) -> Problem {
-        let source = self.source();
+        let source = self.written();
         let found = match self.value.get_ref() {
             DeValue::String(_) => format!("the string {source}"),
             DeValue::Integer(_) => format!("the integer {source}"),
@@ -159,12 +183,25 @@ impl<'a> Field<'a> {
 
     /// A complaint about this value.
     pub(crate) fn problem(&self, message: String) -> Problem {
-        Problem::of_key(self.value.span().start, self.path.to_string(), message)
+        Problem::of_key(self.source.start + self.value.span().start, self.path.to_string(), message)
     }
 
     /// The value as it is written in the file, fit for a message.
-    pub(crate) fn source(&self) -> String {
-        phrase::shortened(self.text.get(self.value.span()).unwrap_or_default())
+    pub(crate) fn written(&self) -> String {
+        phrase::shortened(self.text())
+    }
+
+    /// Whether a table or array is written under headers, so that further headers may add to it.
+    pub(crate) fn is_open(&self) -> bool {
+        match self.value.get_ref() {
+            DeValue::Array(_) => self.text().starts_with("[["),
+            DeValue::Table(_) => !self.text().starts_with('{'),
+            _ => false,
+        }
+    }
+
+    fn text(&self) -> &'a str {
+        self.source.text.get(self.value.span()).unwrap_or_default()
     }
 
     fn triple<T: Value>(&self, expected: &str) -> Result<[T; 3], Problem> {
@@ -174,7 +211,7 @@ impl<'a> Field<'a> {
     }
 
     fn item<'s>(&'s self, index: usize, value: &'s Spanned<DeValue<'s>>) -> Field<'s> {
-        Field { text: self.text, path: Path::Index(&self.path, index), value }
+        Field { source: self.source, path: Path::Index(&self.path, index), value }
     }
 }
 

@@ -1,17 +1,15 @@
 //! What the keys of a scene file mean: which there are, and what they default to.
 
-use std::collections::BTreeMap;
-
 use glam::DVec3;
 use rayweave_core::Scene;
 use rayweave_core::scene::{
     Camera, Cylinder, Fault, Light, Material, Plane, RenderSettings, Sphere, Triangle,
 };
-use toml::de::DeTable;
 
+use crate::draft::Mentions;
 use crate::error::Problem;
-use crate::fields::{Field, Fields};
-use crate::phrase;
+use crate::fields::Fields;
+use crate::mesh::Mesh;
 
 /// All that a scene file says.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,6 +18,8 @@ pub struct SceneFile {
     pub image: ImageSize,
     /// What is in the picture. It obeys [`Scene::check`].
     pub scene: Scene,
+    /// How many triangles of the scene's meshes were left out because they have no area.
+    pub skipped_triangles: usize,
 }
 
 /// The size of a picture in pixels.
@@ -56,47 +56,8 @@ impl ImageSize {
     }
 }
 
-/// Index into [`Scene::materials`] by name.
-type Names<'a> = BTreeMap<&'a str, usize>;
-
-/// Reads a whole document, of which `text` is the source.
-pub(crate) fn read(text: &str, document: &DeTable<'_>) -> Result<SceneFile, Problem> {
-    let document = Fields::of_document(text, document);
-    if let Some(mesh) = document.get("mesh") {
-        return Err(mesh.problem("meshes are not supported by this version".into()));
-    }
-    document.allow(&[
-        "image", "camera", "render", "light", "material", "plane", "sphere", "triangle", "cylinder",
-    ])?;
-    let image = document.get("image").map_or(Ok(ImageSize::default()), |field| image(&field.table()?))?;
-    let camera = camera(&document.field("camera")?.table()?)?;
-    let render =
-        document.get("render").map_or(Ok(RenderSettings::default()), |field| render(&field.table()?))?;
-    let lights = document.each("light", light)?;
-
-    let table = document.get("material");
-    let table = table.as_ref().map(Field::table).transpose()?;
-    let mut names = Names::new();
-    let mut materials = Vec::new();
-    for (name, field) in table.iter().flat_map(Fields::iter) {
-        names.insert(name, materials.len());
-        materials.push(material(&field.table()?)?);
-    }
-
-    let scene = Scene {
-        camera,
-        render,
-        lights,
-        materials,
-        planes: document.each("plane", |fields| plane(fields, &names))?,
-        spheres: document.each("sphere", |fields| sphere(fields, &names))?,
-        triangles: document.each("triangle", |fields| triangle(fields, &names))?,
-        cylinders: document.each("cylinder", |fields| cylinder(fields, &names))?,
-    };
-    Ok(SceneFile { image, scene })
-}
-
-fn image(fields: &Fields) -> Result<ImageSize, Problem> {
+/// Reads a `[image]`.
+pub(crate) fn image(fields: &Fields) -> Result<ImageSize, Problem> {
     fields.allow(&["width", "height"])?;
     let default = ImageSize::default();
     let size = ImageSize {
@@ -106,7 +67,8 @@ fn image(fields: &Fields) -> Result<ImageSize, Problem> {
     fields.checked(size, ImageSize::check)
 }
 
-fn camera(fields: &Fields) -> Result<Camera, Problem> {
+/// Reads a `[camera]`.
+pub(crate) fn camera(fields: &Fields) -> Result<Camera, Problem> {
     fields.allow(&["position", "look_at", "up", "focal_length", "screen_width"])?;
     let camera = Camera {
         position: fields.require("position")?,
@@ -118,7 +80,8 @@ fn camera(fields: &Fields) -> Result<Camera, Problem> {
     fields.checked(camera, Camera::check)
 }
 
-fn render(fields: &Fields) -> Result<RenderSettings, Problem> {
+/// Reads a `[render]`.
+pub(crate) fn render(fields: &Fields) -> Result<RenderSettings, Problem> {
     fields.allow(&["background", "max_reflections", "antialiasing"])?;
     let default = RenderSettings::default();
     let settings = RenderSettings {
@@ -130,7 +93,8 @@ fn render(fields: &Fields) -> Result<RenderSettings, Problem> {
     fields.checked(settings, RenderSettings::check)
 }
 
-fn light(fields: &Fields) -> Result<Light, Problem> {
+/// Reads a `[[light]]`.
+pub(crate) fn light(fields: &Fields) -> Result<Light, Problem> {
     fields.allow(&["position", "color", "power"])?;
     let light = Light {
         position: fields.require("position")?,
@@ -140,7 +104,8 @@ fn light(fields: &Fields) -> Result<Light, Problem> {
     fields.checked(light, Light::check)
 }
 
-fn material(fields: &Fields) -> Result<Material, Problem> {
+/// Reads a `[material.name]`.
+pub(crate) fn material(fields: &Fields) -> Result<Material, Problem> {
     fields.allow(&["color", "ambient", "diffuse", "specular", "shininess", "reflection"])?;
     let default = Material::new(fields.require("color")?);
     let material = Material {
@@ -154,51 +119,52 @@ fn material(fields: &Fields) -> Result<Material, Problem> {
     fields.checked(material, Material::check)
 }
 
-fn plane(fields: &Fields, names: &Names) -> Result<Plane, Problem> {
+/// Reads a `[[plane]]`.
+pub(crate) fn plane(fields: &Fields, materials: &mut Mentions) -> Result<Plane, Problem> {
     fields.allow(&["point", "normal", "material"])?;
     let plane = Plane {
         point: fields.require("point")?,
         normal: fields.require("normal")?,
-        material: reference(&fields.field("material")?, names)?,
+        material: materials.index(&fields.field("material")?)?,
     };
     fields.checked(plane, Plane::check)
 }
 
-fn sphere(fields: &Fields, names: &Names) -> Result<Sphere, Problem> {
+/// Reads a `[[sphere]]`.
+pub(crate) fn sphere(fields: &Fields, materials: &mut Mentions) -> Result<Sphere, Problem> {
     fields.allow(&["center", "radius", "material"])?;
     let sphere = Sphere {
         center: fields.require("center")?,
         radius: fields.require("radius")?,
-        material: reference(&fields.field("material")?, names)?,
+        material: materials.index(&fields.field("material")?)?,
     };
     fields.checked(sphere, Sphere::check)
 }
 
-fn triangle(fields: &Fields, names: &Names) -> Result<Triangle, Problem> {
+/// Reads a `[[triangle]]`.
+pub(crate) fn triangle(fields: &Fields, materials: &mut Mentions) -> Result<Triangle, Problem> {
     fields.allow(&["vertices", "material"])?;
     let triangle = Triangle {
         vertices: fields.require("vertices")?,
-        material: reference(&fields.field("material")?, names)?,
+        material: materials.index(&fields.field("material")?)?,
     };
     fields.checked(triangle, Triangle::check)
 }
 
-fn cylinder(fields: &Fields, names: &Names) -> Result<Cylinder, Problem> {
+/// Reads a `[[cylinder]]`.
+pub(crate) fn cylinder(fields: &Fields, materials: &mut Mentions) -> Result<Cylinder, Problem> {
     fields.allow(&["bottom", "top", "radius", "material"])?;
     let cylinder = Cylinder {
         bottom: fields.require("bottom")?,
         top: fields.require("top")?,
         radius: fields.require("radius")?,
-        material: reference(&fields.field("material")?, names)?,
+        material: materials.index(&fields.field("material")?)?,
     };
     fields.checked(cylinder, Cylinder::check)
 }
 
-/// The index of the material that `field` names.
-fn reference(field: &Field, names: &Names) -> Result<usize, Problem> {
-    let name = field.string()?;
-    names.get(name).copied().ok_or_else(|| {
-        let instead = phrase::instead(name, names.keys().copied());
-        field.problem(format!("expected the name of a material, found {}; {instead}", field.source()))
-    })
+/// Reads a `[[mesh]]`, but not yet its file.
+pub(crate) fn mesh(fields: &Fields, materials: &mut Mentions) -> Result<Mesh, Problem> {
+    fields.allow(&["path", "material"])?;
+    Mesh::new(&fields.field("path")?, materials.index(&fields.field("material")?)?)
 }

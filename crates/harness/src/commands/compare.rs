@@ -57,8 +57,8 @@ pub fn run(scene: Option<&Path>, options: &Options) -> Result<Outcome, String> {
         tile: tile.get(),
         antialiasing: input.scene.render.antialiasing,
         sampling: input.scene.render.sampling,
-        formulas: input.arithmetic.formulas,
-        precision: input.arithmetic.precision.to_string(),
+        formulas: input.execution.arithmetic.formulas,
+        precision: input.execution.arithmetic.precision.to_string(),
     };
     let report = Report { subject: &subject, comparison: &comparison, machine: &Machine::here() };
     print(&format!("{}\n{}\n", report.table(), input.arithmetic_line()))?;

@@ -1,0 +1,99 @@
+//! The filter over a lattice whose points neighbouring pixels share: each point's colour goes into every pixel
+//! that needs it, in the order in which a pixel alone would add it up.
+
+use crate::image::{Rgb, Tile};
+use crate::lane::Scalar;
+use crate::samples::Colors;
+
+/// The rows of a lattice on their way into the pixels of a tile.
+///
+/// The filter is separable. Along each row of the lattice the colours are added up for each column of pixels;
+/// these sums then serve every row of pixels that the row touches, three at the most.
+#[derive(Debug)]
+pub(crate) struct LatticeSums<'a, S> {
+    /// Of the `2 s + 1` samples across a pixel.
+    weights: &'a [S],
+    density: usize,
+    /// Of the tile, in pixels.
+    width: usize,
+    /// Colours in rows of the lattice; in each row those `s` steps apart are neighbours, as the sums need them.
+    strip: [Vec<S>; 3],
+    /// Of one row of the lattice, for each column of pixels.
+    row: [Vec<S>; 3],
+    /// Of the rows of pixels that are not complete yet: row `y` is in `y % 3`.
+    pixels: [[Vec<S>; 3]; 3],
+}
+
+impl<'a, S: Scalar> LatticeSums<'a, S> {
+    /// For a tile of `width` pixels and strips of up to `strip` rows, with `density` steps a pixel.
+    pub(crate) fn new(weights: &'a [S], density: usize, width: usize, strip: usize) -> Self {
+        let channels = |count: usize| [(); 3].map(|()| vec![S::literal(0.0); count]);
+        Self {
+            weights,
+            density,
+            width,
+            strip: channels(strip * density * (width + 2)),
+            row: channels(width),
+            pixels: [(); 3].map(|()| channels(width)),
+        }
+    }
+
+    /// Where the colour of a lattice point is kept.
+    #[inline(always)]
+    fn slot(&self, column: usize, row: usize) -> usize {
+        (row * self.density + column % self.density) * (self.width + 2) + column / self.density
+    }
+
+    /// Takes over the colours of a strip, given in the order of `places`: column and row within the strip.
+    pub(crate) fn fill(&mut self, places: impl Iterator<Item = (usize, usize)>, colors: &Colors<S>) {
+        for (i, (column, row)) in places.enumerate() {
+            let slot = self.slot(column, row);
+            for (kept, channel) in self.strip.iter_mut().zip(&colors.channels) {
+                kept[slot] = channel[i];
+            }
+        }
+    }
+
+    /// Adds the strip's row `row`, which is row `lattice_row` of the tile's lattice, to the rows of pixels that it
+    /// touches, and writes the one that it completes.
+    pub(crate) fn add_row(&mut self, row: usize, lattice_row: usize, tile: &mut Tile<'_>) {
+        for channel in 0..3 {
+            self.row[channel].fill(S::literal(0.0));
+            for (k, &weight) in self.weights.iter().enumerate() {
+                let first = self.slot(k, row);
+                let colors = &self.strip[channel][first..first + self.width];
+                add_weighted(&mut self.row[channel], colors, weight);
+            }
+        }
+        let last = self.weights.len() - 1;
+        let height = tile.area().height as usize;
+        let touched = lattice_row.saturating_sub(last).div_ceil(self.density)
+            ..height.min(lattice_row / self.density + 1);
+        for y in touched {
+            let step = lattice_row - y * self.density;
+            let pixels = &mut self.pixels[y % 3];
+            for (sum, row) in pixels.iter_mut().zip(&self.row) {
+                if step == 0 {
+                    sum.fill(S::literal(0.0));
+                }
+                add_weighted(sum, row, self.weights[step]);
+            }
+            if step == last {
+                write(pixels, tile.row_mut(y));
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn add_weighted<S: Scalar>(sums: &mut [S], colors: &[S], weight: S) {
+    for (sum, &color) in sums.iter_mut().zip(colors) {
+        *sum = *sum + color * weight;
+    }
+}
+
+fn write<S: Scalar>([red, green, blue]: &[Vec<S>; 3], pixels: &mut [Rgb]) {
+    for (((pixel, red), green), blue) in pixels.iter_mut().zip(red).zip(green).zip(blue) {
+        *pixel = [red.to_f32(), green.to_f32(), blue.to_f32()];
+    }
+}

@@ -1,0 +1,114 @@
+//! The number types of a packet: as many numbers as fill a SIMD register, by the `wide` crate.
+//!
+//! Each operation rounds as the one of a single number does, so a packet gives each lane the bits of
+//! one ray alone. Where the machine has no register of that width, `wide` uses several smaller ones.
+
+use crate::lane::{Lane, Mask};
+use wide::{f32x8, f32x16, f64x4, f64x8, u32x8, u32x16, u64x4, u64x8};
+
+macro_rules! packet {
+    ($packet:ident of $lanes:literal $scalar:ident, $index:ident) => {
+        /// All bits of a lane are set, or none.
+        impl Mask for $packet {
+            #[inline(always)]
+            fn any(self) -> bool {
+                $packet::any(self)
+            }
+        }
+
+        impl Lane for $packet {
+            type Scalar = $scalar;
+            type Mask = Self;
+            type Index = $index;
+            const LANES: usize = $lanes;
+
+            #[inline(always)]
+            fn load(numbers: &[$scalar]) -> Self {
+                let mut lanes = [0.0; $lanes];
+                lanes.copy_from_slice(&numbers[..$lanes]);
+                Self::new(lanes)
+            }
+            #[inline(always)]
+            fn store(self, numbers: &mut [$scalar]) {
+                numbers[..$lanes].copy_from_slice(&self.to_array());
+            }
+            #[inline(always)]
+            fn first_lanes(count: usize) -> Self {
+                let places = Self::new(std::array::from_fn(|i| i as $scalar));
+                places.simd_lt(Self::splat(count as $scalar))
+            }
+            #[inline(always)]
+            fn splat(x: $scalar) -> Self {
+                Self::splat(x)
+            }
+            #[inline(always)]
+            fn splat_index(index: u32) -> $index {
+                $index::splat(index.into())
+            }
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                $packet::sqrt(self)
+            }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                $packet::abs(self)
+            }
+            #[inline(always)]
+            fn min(self, other: Self) -> Self {
+                // The instruction of x86 gives `other` if either is NaN, as a lane has to.
+                if cfg!(target_arch = "x86_64") {
+                    self.fast_min(other)
+                } else {
+                    self.simd_lt(other).select(self, other)
+                }
+            }
+            #[inline(always)]
+            fn max(self, other: Self) -> Self {
+                if cfg!(target_arch = "x86_64") {
+                    self.fast_max(other)
+                } else {
+                    self.simd_gt(other).select(self, other)
+                }
+            }
+            #[inline(always)]
+            fn lt(self, other: Self) -> Self {
+                self.simd_lt(other)
+            }
+            #[inline(always)]
+            fn le(self, other: Self) -> Self {
+                self.simd_le(other)
+            }
+            #[inline(always)]
+            fn equals(self, other: Self) -> Self {
+                self.simd_eq(other)
+            }
+            #[inline(always)]
+            fn select(mask: Self, yes: Self, no: Self) -> Self {
+                mask.select(yes, no)
+            }
+            #[inline(always)]
+            fn select_index(mask: Self, yes: $index, no: $index) -> $index {
+                mask.to_bits().select(yes, no)
+            }
+            #[inline(always)]
+            fn first_index(mask: Self, indices: $index) -> Option<u32> {
+                let lanes = mask.to_bitmask();
+                // An index came from a `u32`.
+                (lanes != 0).then(|| indices.to_array()[lanes.trailing_zeros() as usize] as u32)
+            }
+            #[inline(always)]
+            fn index_equals(indices: $index, index: u32) -> Self {
+                Self::from_bits(indices.simd_eq($index::splat(index.into())))
+            }
+            #[inline(always)]
+            fn index_above(indices: $index, index: u32) -> Self {
+                Self::from_bits(indices.simd_gt($index::splat(index.into())))
+            }
+        }
+    };
+}
+
+packet!(f32x8 of 8 f32, u32x8);
+packet!(f32x16 of 16 f32, u32x16);
+packet!(f64x4 of 4 f64, u64x4);
+packet!(f64x8 of 8 f64, u64x8);

@@ -1,0 +1,69 @@
+//! Lists of samples: where they lie, and what colour each has.
+
+use crate::lane::{Lane, Scalar};
+use crate::vector::Vector;
+
+/// Places in the picture, in half steps of the filter's from its middle.
+#[derive(Debug, Default)]
+pub(crate) struct Places<S> {
+    right: Vec<S>,
+    down: Vec<S>,
+}
+
+impl<S: Scalar> Places<S> {
+    pub(crate) fn len(&self) -> usize {
+        self.right.len()
+    }
+
+    pub(crate) fn clear(&mut self) {
+        self.right.clear();
+        self.down.clear();
+    }
+
+    pub(crate) fn push(&mut self, right: S, down: S) {
+        self.right.push(right);
+        self.down.push(down);
+    }
+
+    /// Repeats the last place until packets of `lanes` are full.
+    pub(crate) fn pad(&mut self, lanes: usize) {
+        let full = self.len().next_multiple_of(lanes);
+        if let (Some(&right), Some(&down)) = (self.right.last(), self.down.last()) {
+            self.right.resize(full, right);
+            self.down.resize(full, down);
+        }
+    }
+
+    /// The places from number `first` on: right and down.
+    #[inline(always)]
+    pub(crate) fn load<L: Lane<Scalar = S>>(&self, first: usize) -> (L, L) {
+        (L::load(&self.right[first..]), L::load(&self.down[first..]))
+    }
+}
+
+/// The colours of samples: red, green and blue each in a list of its own.
+#[derive(Debug, Default)]
+pub(crate) struct Colors<S> {
+    pub(crate) channels: [Vec<S>; 3],
+}
+
+impl<S: Scalar> Colors<S> {
+    pub(crate) fn resize(&mut self, count: usize) {
+        for channel in &mut self.channels {
+            channel.resize(count, S::literal(0.0));
+        }
+    }
+
+    pub(crate) fn get(&self, i: usize) -> Vector<S> {
+        let [red, green, blue] = &self.channels;
+        Vector::new(red[i], green[i], blue[i])
+    }
+
+    #[inline(always)]
+    pub(crate) fn store<L: Lane<Scalar = S>>(&mut self, first: usize, color: Vector<L>) {
+        let [red, green, blue] = &mut self.channels;
+        color.x.store(&mut red[first..]);
+        color.y.store(&mut green[first..]);
+        color.z.store(&mut blue[first..]);
+    }
+}
