@@ -57,7 +57,7 @@ impl Compiled for &Scene {
     type Output = Box<dyn Cast + Send + Sync>;
 
     fn compiled<S: Scalar, F: Family>(self) -> Self::Output {
-        Box::new(World::<S, F>::new(self))
+        Box::new(World::<S, F>::new(self, None))
     }
 }
 
@@ -74,7 +74,7 @@ impl<S: Scalar, F: Family> Cast for World<S, F> {
         let (_, exponent) = libm::frexp(direction.abs().max_element());
         let ray =
             Ray::<S> { origin: Vector::rounded(origin), direction: Vector::rounded(near_one(direction)) };
-        let hit = self.primitives.nearest::<S, F>(&ray);
+        let hit = self.primitives.nearest::<S, F>(&ray, true, None);
         hit.exists().then(|| {
             let at = self.primitives.surface::<S, F>(hit.primitive, &ray, hit.t);
             Hit {
@@ -88,6 +88,6 @@ impl<S: Scalar, F: Family> Cast for World<S, F> {
 
     fn color(&self, origin: DVec3, direction: DVec3) -> [f64; 3] {
         let direction = Vector::<S>::rounded(direction).unit();
-        self.trace(Ray { origin: Vector::rounded(origin), direction }, true).widened().to_array()
+        self.trace(Ray { origin: Vector::rounded(origin), direction }, true, None).widened().to_array()
     }
 }

@@ -12,7 +12,7 @@ use std::fmt::Debug;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 /// One truth value a lane.
-pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
+pub trait Mask: Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
     /// Whether it holds in any lane.
     fn any(self) -> bool;
 }
@@ -36,6 +36,8 @@ pub trait Lane:
     /// How many numbers there are.
     const LANES: usize;
 
+    /// The number of each lane.
+    fn from_fn(number: impl FnMut(usize) -> Self::Scalar) -> Self;
     /// The first `LANES` numbers of `numbers`.
     ///
     /// # Panics
@@ -76,6 +78,8 @@ pub trait Lane:
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
     /// `yes` where the mask holds, `no` elsewhere.
     fn select_index(mask: Self::Mask, yes: Self::Index, no: Self::Index) -> Self::Index;
+    /// The number in the first lane where the mask holds.
+    fn first(mask: Self::Mask, numbers: Self) -> Option<Self::Scalar>;
     /// The index in the first lane where the mask holds.
     fn first_index(mask: Self::Mask, indices: Self::Index) -> Option<u32>;
     /// The lanes that hold `index`.
@@ -124,6 +128,10 @@ macro_rules! scalar {
             type Index = u32;
             const LANES: usize = 1;
 
+            #[inline(always)]
+            fn from_fn(mut number: impl FnMut(usize) -> Self) -> Self {
+                number(0)
+            }
             #[inline(always)]
             fn load(numbers: &[Self]) -> Self {
                 numbers[0]
@@ -179,6 +187,10 @@ macro_rules! scalar {
             #[inline(always)]
             fn select_index(mask: bool, yes: u32, no: u32) -> u32 {
                 if mask { yes } else { no }
+            }
+            #[inline(always)]
+            fn first(mask: bool, number: Self) -> Option<Self> {
+                mask.then_some(number)
             }
             #[inline(always)]
             fn first_index(mask: bool, index: u32) -> Option<u32> {

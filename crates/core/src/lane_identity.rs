@@ -82,6 +82,9 @@ impl Lane for Quad {
     type Index = [u32; 4];
     const LANES: usize = 4;
 
+    fn from_fn(number: impl FnMut(usize) -> f32) -> Self {
+        Self(from_fn(number))
+    }
     fn load(numbers: &[f32]) -> Self {
         Self(from_fn(|i| numbers[i]))
     }
@@ -123,6 +126,9 @@ impl Lane for Quad {
     }
     fn select_index(mask: QuadMask, yes: [u32; 4], no: [u32; 4]) -> [u32; 4] {
         from_fn(|i| if mask.0[i] { yes[i] } else { no[i] })
+    }
+    fn first(mask: QuadMask, numbers: Self) -> Option<f32> {
+        mask.0.iter().position(|&lane| lane).map(|i| numbers.0[i])
     }
     fn first_index(mask: QuadMask, indices: [u32; 4]) -> Option<u32> {
         mask.0.iter().position(|&lane| lane).map(|i| indices[i])
@@ -194,10 +200,10 @@ fn scene() -> Scene {
 #[test]
 fn four_lanes_give_the_bits_of_one() {
     let scene = scene();
-    let world = World::<f32, Robust>::new(&scene);
+    let world = World::<f32, Robust>::new(&scene, None);
     let camera = Camera::<f32>::new(&scene.camera, 40, 1);
     let bits = |right: f32, down: f32| {
-        let color = world.trace(camera.ray(right, down), true);
+        let color = world.trace(camera.ray(right, down), true, None);
         [color.x, color.y, color.z].map(f32::to_bits)
     };
     // Neighbours first, then lanes that have nothing to do with each other.
@@ -207,7 +213,7 @@ fn four_lanes_give_the_bits_of_one() {
                 let places: [f32; 4] = from_fn(|i| f32::from((right + 39 + i as i16 * stride) % 79 - 39));
                 let down = f32::from(down);
                 let rays = camera.ray(Quad(places), Quad::splat(down));
-                let color = world.trace(rays, QuadMask([true, true, false, true]));
+                let color = world.trace(rays, QuadMask([true, true, false, true]), None);
                 for lane in [0, 1, 3] {
                     let found = [color.x, color.y, color.z].map(|channel| channel.0[lane].to_bits());
                     assert_eq!(found, bits(places[lane], down), "lane {lane} at ({}, {down})", places[lane]);

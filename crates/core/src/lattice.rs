@@ -18,6 +18,8 @@ pub(crate) struct LatticeSums<'a, S> {
     width: usize,
     /// Colours in rows of the lattice; in each row those `s` steps apart are neighbours, as the sums need them.
     strip: [Vec<S>; 3],
+    /// Where in the strip each colour goes, in the order in which they come.
+    slots: Vec<u32>,
     /// Of one row of the lattice, for each column of pixels.
     row: [Vec<S>; 3],
     /// Of the rows of pixels that are not complete yet: row `y` is in `y % 3`.
@@ -25,14 +27,15 @@ pub(crate) struct LatticeSums<'a, S> {
 }
 
 impl<'a, S: Scalar> LatticeSums<'a, S> {
-    /// For a tile of `width` pixels and strips of up to `strip` rows, with `density` steps a pixel.
-    pub(crate) fn new(weights: &'a [S], density: usize, width: usize, strip: usize) -> Self {
+    /// For a tile of `width` pixels, with `density` steps a pixel.
+    pub(crate) fn new(weights: &'a [S], density: usize, width: usize) -> Self {
         let channels = |count: usize| [(); 3].map(|()| vec![S::literal(0.0); count]);
         Self {
             weights,
             density,
             width,
-            strip: channels(strip * density * (width + 2)),
+            strip: channels(0),
+            slots: Vec::new(),
             row: channels(width),
             pixels: [(); 3].map(|()| channels(width)),
         }
@@ -44,12 +47,23 @@ impl<'a, S: Scalar> LatticeSums<'a, S> {
         (row * self.density + column % self.density) * (self.width + 2) + column / self.density
     }
 
-    /// Takes over the colours of a strip, given in the order of `places`: column and row within the strip.
-    pub(crate) fn fill(&mut self, places: impl Iterator<Item = (usize, usize)>, colors: &Colors<S>) {
-        for (i, (column, row)) in places.enumerate() {
-            let slot = self.slot(column, row);
-            for (kept, channel) in self.strip.iter_mut().zip(&colors.channels) {
-                kept[slot] = channel[i];
+    /// Makes ready for strips of `rows` rows: the places of their points are [expected](Self::expect) next.
+    pub(crate) fn start_strip(&mut self, rows: usize) {
+        self.slots.clear();
+        let size = rows * self.density * (self.width + 2);
+        self.strip.iter_mut().for_each(|channel| channel.resize(size, S::literal(0.0)));
+    }
+
+    /// The column and row, within the strip, of the next point in the order in which colours will come.
+    pub(crate) fn expect(&mut self, column: usize, row: usize) {
+        self.slots.push(self.slot(column, row) as u32);
+    }
+
+    /// Takes over the colours of a strip.
+    pub(crate) fn fill(&mut self, colors: &Colors<S>) {
+        for (kept, channel) in self.strip.iter_mut().zip(&colors.channels) {
+            for (&slot, &color) in self.slots.iter().zip(channel) {
+                kept[slot as usize] = color;
             }
         }
     }

@@ -9,8 +9,10 @@
 //! This crate starts no thread, opens no file and reads no clock.
 
 mod antialiasing;
+mod bundle;
 mod camera;
 pub mod cast;
+mod confinement;
 pub mod formulas;
 pub mod image;
 mod lane;
@@ -28,6 +30,7 @@ mod shapes;
 pub mod strategy;
 mod trace;
 pub mod tracer;
+mod tree;
 mod vector;
 pub mod work;
 

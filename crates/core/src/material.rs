@@ -1,6 +1,7 @@
 //! Surfaces and lights in the precision of the picture, and Phong's model of how one answers the
 //! other (Bui Tuong Phong, Illumination for Computer Generated Pictures, 1975).
 
+use crate::bundle::Bundle;
 use crate::lane::{Lane, Scalar};
 use crate::scene;
 use crate::vector::Vector;
@@ -15,13 +16,17 @@ pub(crate) struct Material<S> {
     pub(crate) reflection: S,
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Light<S> {
     pub(crate) position: Vector<S>,
     /// The sum of the magnitudes of its coordinates: rounding errors near it are in proportion.
     pub(crate) reach: S,
     /// Colour times power.
     pub(crate) intensity: Vector<S>,
+    /// The planes that may hide it.
+    pub(crate) planes: Vec<u32>,
+    /// The shadow rays to it.
+    pub(crate) bundle: Bundle<S>,
 }
 
 impl<S: Scalar> Material<S> {
@@ -38,12 +43,14 @@ impl<S: Scalar> Material<S> {
 }
 
 impl<S: Scalar> Light<S> {
-    pub(crate) fn new(light: &scene::Light) -> Self {
+    pub(crate) fn new(light: &scene::Light, planes: Vec<u32>, bundle: Bundle<S>) -> Self {
         let position = Vector::rounded(light.position);
         Self {
             position,
             reach: position.sum_of_magnitudes(),
             intensity: Vector::rounded(light.color * light.power),
+            planes,
+            bundle,
         }
     }
 }

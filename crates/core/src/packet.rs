@@ -23,6 +23,10 @@ macro_rules! packet {
             const LANES: usize = $lanes;
 
             #[inline(always)]
+            fn from_fn(number: impl FnMut(usize) -> $scalar) -> Self {
+                Self::new(std::array::from_fn(number))
+            }
+            #[inline(always)]
             fn load(numbers: &[$scalar]) -> Self {
                 let mut lanes = [0.0; $lanes];
                 lanes.copy_from_slice(&numbers[..$lanes]);
@@ -89,6 +93,11 @@ macro_rules! packet {
             #[inline(always)]
             fn select_index(mask: Self, yes: $index, no: $index) -> $index {
                 mask.to_bits().select(yes, no)
+            }
+            #[inline(always)]
+            fn first(mask: Self, numbers: Self) -> Option<$scalar> {
+                let lanes = mask.to_bitmask();
+                (lanes != 0).then(|| numbers.to_array()[lanes.trailing_zeros() as usize])
             }
             #[inline(always)]
             fn first_index(mask: Self, indices: $index) -> Option<u32> {

@@ -1,28 +1,57 @@
 //! All primitives of a scene, and the two questions a ray asks of them: what is nearest, and is
 //! anything in between.
 
-use crate::formulas::Family;
+use crate::bundle::Bundle;
+use crate::formulas::{Aim, Family, LightPath};
 use crate::lane::{Lane, Mask, Scalar};
+use crate::material::Light;
 use crate::ray::{Ray, miss};
 use crate::scene::Scene;
 use crate::shapes::SurfacePoint;
-use crate::shapes::cylinder::Cylinder;
+use crate::shapes::cylinder::{self, Cylinder};
 use crate::shapes::plane::Plane;
-use crate::shapes::sphere::Sphere;
-use crate::shapes::triangle::Triangle;
+use crate::shapes::sphere::{self, Sphere};
+use crate::shapes::triangle::{self, Triangle};
+use crate::tree::{Bounds, Tree};
 use crate::vector::Vector;
-use std::ops::ControlFlow;
+use std::ops::Range;
 
-/// The primitives by kind, in file order. A primitive's number counts through the kinds in this
-/// order: it decides between equal distances.
+/// From so many bounded primitives on a tree is faster than trying each (measured: METHODOLOGY.md).
+const TREE_PAYS: usize = 12;
+
+/// The primitives by kind. A primitive's number counts through planes, spheres, triangles and cylinders, each in
+/// file order: it decides between equal distances.
 #[derive(Debug)]
 pub(crate) struct Primitives<S> {
     planes: Vec<Plane<S>>,
-    spheres: Vec<Sphere<S>>,
-    triangles: Vec<Triangle<S>>,
-    cylinders: Vec<Cylinder<S>>,
+    spheres: Kind<Sphere<S>>,
+    triangles: Kind<Triangle<S>>,
+    cylinders: Kind<Cylinder<S>>,
+    /// All that are not planes.
+    bounded: Leaf,
+    /// Over the bounded ones, where there are enough of them.
+    tree: Option<Tree<S>>,
     /// The material of each primitive, by its number.
     materials: Vec<usize>,
+}
+
+/// The primitives of one kind, in the order in which they are tried.
+#[derive(Debug)]
+struct Kind<T> {
+    shapes: Vec<T>,
+    /// Of each shape.
+    numbers: Vec<u32>,
+    /// Where each shape is, by its number less the kind's first.
+    places: Vec<u32>,
+    first: u32,
+}
+
+/// A few primitives that are tried together: ranges of places.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Leaf {
+    spheres: Range<u32>,
+    triangles: Range<u32>,
+    cylinders: Range<u32>,
 }
 
 /// The nearest hit of a ray.
@@ -39,6 +68,55 @@ impl<L: Lane> Hit<L> {
     pub(crate) fn exists(&self) -> L::Mask {
         self.t.lt(miss())
     }
+
+    /// Another hit is nearer if its `t` is smaller; an equal one, if its number is. Where numbers only grow, the
+    /// second question need not be asked.
+    #[inline(always)]
+    fn offer<const ORDERED: bool>(&mut self, number: u32, t: L) {
+        let mut nearer = t.lt(self.t);
+        if !ORDERED {
+            let tie = t.equals(self.t) & L::index_above(self.primitive, number);
+            nearer = nearer | tie;
+        }
+        self.t = L::select(nearer, t, self.t);
+        self.primitive = L::select_index(nearer, L::splat_index(number), self.primitive);
+    }
+}
+
+impl<T: Clone> Kind<T> {
+    /// Puts the shapes in this order of their present places.
+    fn arrange(&mut self, order: &[u32]) {
+        self.shapes = order.iter().map(|&place| self.shapes[place as usize].clone()).collect();
+        self.numbers = order.iter().map(|&place| self.numbers[place as usize]).collect();
+        for (place, &number) in (0..).zip(&self.numbers) {
+            self.places[(number - self.first) as usize] = place;
+        }
+    }
+}
+
+impl<T> Kind<T> {
+    fn new<P>(primitives: &[P], first: usize, shape: impl Fn(&P) -> T) -> Self {
+        let count = primitives.len() as u32;
+        Self {
+            shapes: primitives.iter().map(shape).collect(),
+            numbers: (first as u32..first as u32 + count).collect(),
+            places: (0..count).collect(),
+            first: first as u32,
+        }
+    }
+
+    /// The shape with this number, unless it is of another kind.
+    #[inline(always)]
+    fn get(&self, number: u32) -> Option<&T> {
+        let place = *self.places.get(number.checked_sub(self.first)? as usize)?;
+        self.shapes.get(place as usize)
+    }
+
+    #[inline(always)]
+    fn range(&self, range: &Range<u32>) -> impl Iterator<Item = (u32, &T)> {
+        let range = range.start as usize..range.end as usize;
+        self.numbers[range.clone()].iter().copied().zip(&self.shapes[range])
+    }
 }
 
 impl<S: Scalar> Primitives<S> {
@@ -48,70 +126,232 @@ impl<S: Scalar> Primitives<S> {
             .chain(scene.triangles.iter().map(|t| t.material))
             .chain(scene.cylinders.iter().map(|c| c.material))
             .collect();
-        Self {
+        let spheres_from = scene.planes.len();
+        let triangles_from = spheres_from + scene.spheres.len();
+        let cylinders_from = triangles_from + scene.triangles.len();
+        let mut primitives = Self {
             planes: scene.planes.iter().map(Plane::new).collect(),
-            spheres: scene.spheres.iter().map(Sphere::new).collect(),
-            triangles: scene.triangles.iter().map(Triangle::new).collect(),
-            cylinders: scene.cylinders.iter().map(Cylinder::new).collect(),
+            spheres: Kind::new(&scene.spheres, spheres_from, Sphere::new),
+            triangles: Kind::new(&scene.triangles, triangles_from, Triangle::new),
+            cylinders: Kind::new(&scene.cylinders, cylinders_from, Cylinder::new),
+            bounded: Leaf {
+                spheres: 0..scene.spheres.len() as u32,
+                triangles: 0..scene.triangles.len() as u32,
+                cylinders: 0..scene.cylinders.len() as u32,
+            },
+            tree: None,
             materials,
+        };
+        primitives.plant();
+        primitives
+    }
+
+    /// Puts a tree over the bounded primitives, if it pays.
+    fn plant(&mut self) {
+        let Self { spheres, triangles, cylinders, .. } = self;
+        let counts = [spheres.shapes.len(), triangles.shapes.len(), cylinders.shapes.len()];
+        if counts.iter().sum::<usize>() < TREE_PAYS {
+            return;
+        }
+        let bounds: Vec<Bounds<S>> = (spheres.shapes.iter().map(Sphere::bounds))
+            .chain(triangles.shapes.iter().map(Triangle::bounds))
+            .chain(cylinders.shapes.iter().map(Cylinder::bounds))
+            .collect();
+        // The shapes of a leaf get places next to each other.
+        let mut order = [vec![], vec![], vec![]];
+        self.tree = Tree::new(&bounds, |members| {
+            let from = order.each_ref().map(|places| places.len() as u32);
+            for &member in members {
+                let mut place = member as usize;
+                let mut kind = 0;
+                while place >= counts[kind] {
+                    place -= counts[kind];
+                    kind += 1;
+                }
+                order[kind].push(place as u32);
+            }
+            let to = order.each_ref().map(|places| places.len() as u32);
+            Leaf { spheres: from[0]..to[0], triangles: from[1]..to[1], cylinders: from[2]..to[2] }
+        });
+        if self.tree.is_some() {
+            self.spheres.arrange(&order[0]);
+            self.triangles.arrange(&order[1]);
+            self.cylinders.arrange(&order[2]);
         }
     }
 
-    /// The smallest `t`; of equal ones that of the lowest number, since only a smaller `t` replaces
-    /// what was found before.
+    /// What the rays of `wanted` share with the shapes of each kind that is there.
     #[inline(always)]
-    pub(crate) fn nearest<L: Lane<Scalar = S>, F: Family>(&self, ray: &Ray<L>) -> Hit<L> {
+    fn aim<L: Lane<Scalar = S>>(&self, ray: &Ray<L>, wanted: L::Mask) -> Aim<L> {
+        Aim {
+            sphere: if self.spheres.shapes.is_empty() { sphere::Aim::none() } else { sphere::Aim::new(ray) },
+            triangle: if self.triangles.shapes.is_empty() {
+                triangle::Aim::none()
+            } else {
+                triangle::Aim::new(ray, wanted)
+            },
+            cylinder: if self.cylinders.shapes.is_empty() {
+                cylinder::Aim::none()
+            } else {
+                cylinder::Aim::new(ray)
+            },
+        }
+    }
+
+    /// The smallest `t` of the rays of `wanted`; of equal ones that of the lowest number. Of rays that all leave the
+    /// eye, `eye` knows what they may meet; their directions are of unit length.
+    #[inline(always)]
+    pub(crate) fn nearest<L: Lane<Scalar = S>, F: Family>(
+        &self,
+        ray: &Ray<L>,
+        wanted: L::Mask,
+        eye: Option<&Bundle<S>>,
+    ) -> Hit<L> {
         let mut nearest = Hit { t: miss(), primitive: L::splat_index(0) };
-        let _ = self.visit::<L, F>(ray, |number, t: L| {
-            let nearer = t.lt(nearest.t);
-            nearest.t = L::select(nearer, t, nearest.t);
-            nearest.primitive = L::select_index(nearer, L::splat_index(number), nearest.primitive);
-            ControlFlow::Continue(())
-        });
+        for (number, plane) in (0..).zip(&self.planes) {
+            nearest.offer::<true>(number, F::plane(plane, ray));
+        }
+        match (&self.tree, eye) {
+            (Some(tree), _) if F::FAITHFUL => {
+                let aim = self.aim(ray, wanted);
+                tree.visit(ray, wanted, nearest.t, |leaf, reached| {
+                    self.nearest_in::<L, F>(leaf, ray, &aim, reached, &mut nearest);
+                    (wanted, nearest.t)
+                });
+            }
+            (_, Some(eye)) if F::FAITHFUL => {
+                self.met::<L, F>(eye, ray, (ray.direction, L::literal(0.0)), wanted, |number, t| {
+                    nearest.offer::<true>(number, t);
+                    wanted
+                });
+            }
+            _ => self.nearest_in::<L, F>(&self.bounded, ray, &self.aim(ray, wanted), wanted, &mut nearest),
+        }
         nearest
     }
 
-    /// The lanes of `wanted` whose ray meets something before `limit`.
+    /// Shows `found` the number and the `t` of every bounded primitive, in order, whose cone some ray of `wanted` is
+    /// in; `found` returns the rays that still want to know. The rays' unit directions away from the bundle's point,
+    /// and their lengths, are `(direction, length)`.
+    #[inline(always)]
+    fn met<L: Lane<Scalar = S>, F: Family>(
+        &self,
+        bundle: &Bundle<S>,
+        ray: &Ray<L>,
+        (direction, length): (Vector<L>, L),
+        mut wanted: L::Mask,
+        mut found: impl FnMut(u32, L) -> L::Mask,
+    ) {
+        for (i, cone) in bundle.spheres.iter().enumerate() {
+            let met = wanted & cone.may_meet(direction, length);
+            if met.any() {
+                let t = F::sphere(&self.spheres.shapes[i], ray, &sphere::Aim::new(ray), met);
+                wanted = found(self.spheres.first + i as u32, t);
+            }
+        }
+        for (i, cone) in bundle.triangles.iter().enumerate() {
+            let met = wanted & cone.may_meet(direction, length);
+            if met.any() {
+                let t = F::triangle(&self.triangles.shapes[i], ray, &triangle::Aim::new(ray, met), met);
+                wanted = found(self.triangles.first + i as u32, t);
+            }
+        }
+        for (i, cone) in bundle.cylinders.iter().enumerate() {
+            let met = wanted & cone.may_meet(direction, length);
+            if met.any() {
+                let t = F::cylinder(&self.cylinders.shapes[i], ray, &cylinder::Aim::new(ray), met);
+                wanted = found(self.cylinders.first + i as u32, t);
+            }
+        }
+    }
+
+    /// Tries every primitive of a leaf.
+    #[inline(never)]
+    fn nearest_in<L: Lane<Scalar = S>, F: Family>(
+        &self,
+        leaf: &Leaf,
+        ray: &Ray<L>,
+        aim: &Aim<L>,
+        wanted: L::Mask,
+        nearest: &mut Hit<L>,
+    ) {
+        for (number, sphere) in self.spheres.range(&leaf.spheres) {
+            nearest.offer::<false>(number, F::sphere(sphere, ray, &aim.sphere, wanted));
+        }
+        for (number, triangle) in self.triangles.range(&leaf.triangles) {
+            nearest.offer::<false>(number, F::triangle(triangle, ray, &aim.triangle, wanted));
+        }
+        for (number, cylinder) in self.cylinders.range(&leaf.cylinders) {
+            nearest.offer::<false>(number, F::cylinder(cylinder, ray, &aim.cylinder, wanted));
+        }
+    }
+
+    /// The lanes of `wanted` whose ray, on the `path` to `light`, meets something before `limit`.
     #[inline(always)]
     pub(crate) fn blocked<L: Lane<Scalar = S>, F: Family>(
         &self,
         ray: &Ray<L>,
         limit: L,
         wanted: L::Mask,
+        path: &LightPath<L>,
+        light: &Light<S>,
     ) -> L::Mask {
         let mut free = wanted;
-        let _ = self.visit::<L, F>(ray, |_, t: L| {
-            free = free & !t.lt(limit);
-            if free.any() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
-        });
+        for &plane in &light.planes {
+            free = free & !F::plane(&self.planes[plane as usize], ray).lt(limit);
+        }
+        if !free.any() {
+            return wanted;
+        }
+        match &self.tree {
+            Some(tree) if F::FAITHFUL => {
+                let aim = self.aim(ray, free);
+                tree.visit(ray, free, limit, |leaf, reached| {
+                    free = free & !(reached & !self.free_in::<L, F>(leaf, ray, &aim, limit, reached));
+                    (free, limit)
+                });
+            }
+            _ if F::FAITHFUL => {
+                self.met::<L, F>(&light.bundle, ray, (-path.to_light, path.distance), free, |_, t| {
+                    free = free & !t.lt(limit);
+                    free
+                });
+            }
+            _ => free = self.free_in::<L, F>(&self.bounded, ray, &self.aim(ray, free), limit, free),
+        }
         wanted & !free
     }
 
-    /// Shows the number and the `t` of every primitive, in order, until `found` has seen enough.
-    #[inline(always)]
-    fn visit<L: Lane<Scalar = S>, F: Family>(
+    /// The lanes of `wanted` that meet nothing of `leaf` before `limit`.
+    #[inline(never)]
+    fn free_in<L: Lane<Scalar = S>, F: Family>(
         &self,
+        leaf: &Leaf,
         ray: &Ray<L>,
-        mut found: impl FnMut(u32, L) -> ControlFlow<()>,
-    ) -> ControlFlow<()> {
-        // A kind that is not there costs a comparison, not what its rays would need.
-        let mut first = 0;
-        if !self.planes.is_empty() {
-            F::planes(&self.planes, ray, &mut |i, t| found(first + i as u32, t))?;
-            first += self.planes.len() as u32;
+        aim: &Aim<L>,
+        limit: L,
+        wanted: L::Mask,
+    ) -> L::Mask {
+        let mut free = wanted;
+        for (_, sphere) in self.spheres.range(&leaf.spheres) {
+            free = free & !F::sphere(sphere, ray, &aim.sphere, free).lt(limit);
+            if !free.any() {
+                return free;
+            }
         }
-        if !self.spheres.is_empty() {
-            F::spheres(&self.spheres, ray, &mut |i, t| found(first + i as u32, t))?;
-            first += self.spheres.len() as u32;
+        for (_, triangle) in self.triangles.range(&leaf.triangles) {
+            free = free & !F::triangle(triangle, ray, &aim.triangle, free).lt(limit);
+            if !free.any() {
+                return free;
+            }
         }
-        if !self.triangles.is_empty() {
-            F::triangles(&self.triangles, ray, &mut |i, t| found(first + i as u32, t))?;
-            first += self.triangles.len() as u32;
+        for (_, cylinder) in self.cylinders.range(&leaf.cylinders) {
+            free = free & !F::cylinder(cylinder, ray, &aim.cylinder, free).lt(limit);
+            if !free.any() {
+                return free;
+            }
         }
-        if !self.cylinders.is_empty() {
-            F::cylinders(&self.cylinders, ray, &mut |i, t| found(first + i as u32, t))?;
-        }
-        ControlFlow::Continue(())
+        free
     }
 
     /// The index of a primitive's material.
@@ -139,19 +379,15 @@ impl<S: Scalar> Primitives<S> {
     /// The point of primitive `number` next to `near`, and its normal there.
     #[inline(always)]
     fn surface_near<L: Lane<Scalar = S>>(&self, number: u32, near: Vector<L>) -> SurfacePoint<L> {
-        let mut index = number as usize;
-        if let Some(plane) = self.planes.get(index) {
-            return plane.surface(near);
+        if let Some(plane) = self.planes.get(number as usize) {
+            plane.surface(near)
+        } else if let Some(sphere) = self.spheres.get(number) {
+            sphere.surface(near)
+        } else if let Some(triangle) = self.triangles.get(number) {
+            triangle.surface(near)
+        } else {
+            let cylinders = &self.cylinders;
+            cylinders.shapes[cylinders.places[(number - cylinders.first) as usize] as usize].surface(near)
         }
-        index -= self.planes.len();
-        if let Some(sphere) = self.spheres.get(index) {
-            return sphere.surface(near);
-        }
-        index -= self.spheres.len();
-        if let Some(triangle) = self.triangles.get(index) {
-            return triangle.surface(near);
-        }
-        index -= self.triangles.len();
-        self.cylinders[index].surface(near)
     }
 }

@@ -25,19 +25,14 @@ impl<S: Scalar> Places<S> {
         self.down.push(down);
     }
 
-    /// Repeats the last place until packets of `lanes` are full.
-    pub(crate) fn pad(&mut self, lanes: usize) {
-        let full = self.len().next_multiple_of(lanes);
-        if let (Some(&right), Some(&down)) = (self.right.last(), self.down.last()) {
-            self.right.resize(full, right);
-            self.down.resize(full, down);
-        }
-    }
-
-    /// The places from number `first` on: right and down.
+    /// The places from number `first` on: right and down. Lanes beyond the last repeat some of them.
     #[inline(always)]
     pub(crate) fn load<L: Lane<Scalar = S>>(&self, first: usize) -> (L, L) {
-        (L::load(&self.right[first..]), L::load(&self.down[first..]))
+        if first + L::LANES <= self.len() {
+            return (L::load(&self.right[first..]), L::load(&self.down[first..]));
+        }
+        let filled = |numbers: &[S]| L::from_fn(|lane| numbers[first + lane % (numbers.len() - first)]);
+        (filled(&self.right), filled(&self.down))
     }
 }
 

@@ -1,6 +1,8 @@
 //! The colour that a ray brings back: Whitted's recursion (An Improved Illumination Model for
 //! Shaded Display, 1980) as a loop, since a mirror sends on just one ray.
 
+use crate::bundle::Bundle;
+use crate::confinement::hiding_planes;
 use crate::formulas::{Family, LightPath};
 use crate::lane::{Lane, Mask, Scalar};
 use crate::material::{Finish, Light, Material, power};
@@ -9,6 +11,7 @@ use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::shapes::SurfacePoint;
 use crate::vector::Vector;
+use glam::DVec3;
 use std::marker::PhantomData;
 
 /// A scene in the precision and with the formulas of a picture, ready for rays.
@@ -29,11 +32,19 @@ struct Surface<L: Lane> {
 }
 
 impl<S: Scalar, F: Family> World<S, F> {
-    pub(crate) fn new(scene: &Scene) -> Self {
+    /// For rays that all start at `eye`, or else anywhere.
+    pub(crate) fn new(scene: &Scene, eye: Option<DVec3>) -> Self {
+        // Formulas that let a ray slip through a plane may bring it anywhere.
+        let eye = eye.filter(|_| F::FAITHFUL);
         Self {
             primitives: Primitives::new(scene),
             materials: scene.materials.iter().map(Material::new).collect(),
-            lights: scene.lights.iter().map(Light::new).collect(),
+            lights: (scene.lights.iter())
+                .filter_map(|light| {
+                    let planes = hiding_planes(scene, light.position, eye, S::ROUNDOFF)?;
+                    Some(Light::new(light, planes, Bundle::new(scene, light.position)))
+                })
+                .collect(),
             background: Vector::rounded(scene.render.background),
             max_reflections: scene.render.max_reflections,
             formulas: PhantomData,
@@ -45,12 +56,18 @@ impl<S: Scalar, F: Family> World<S, F> {
     /// Instead of `(1 - k) surface + k mirrored` from the last bounce back to the first, each
     /// surface is added with the share that the mirrors before it left.
     #[inline(always)]
-    pub(crate) fn trace<L: Lane<Scalar = S>>(&self, mut ray: Ray<L>, mut active: L::Mask) -> Vector<L> {
+    pub(crate) fn trace<L: Lane<Scalar = S>>(
+        &self,
+        mut ray: Ray<L>,
+        mut active: L::Mask,
+        eye: Option<&Bundle<S>>,
+    ) -> Vector<L> {
+        let mut bundle = eye;
         let (zero, one) = (L::literal(0.0), L::literal(1.0));
         let mut color = Vector::zero();
         let mut share = one;
         for bounce in 0..=self.max_reflections {
-            let hit = self.primitives.nearest::<L, F>(&ray);
+            let hit = self.primitives.nearest::<L, F>(&ray, active, bundle.take());
             let missed = active & !hit.exists();
             color = Vector::select(missed, color + Vector::splat(self.background) * share, color);
             active = active & hit.exists();
@@ -118,7 +135,7 @@ impl<S: Scalar, F: Family> World<S, F> {
             let reach = start_reach + L::splat(light.reach);
             let path = LightPath { start, toward, to_light, distance, inverse_distance, reach };
             let (shadow_ray, limit) = F::shadow_ray(&path);
-            let lit = above & !self.primitives.blocked::<L, F>(&shadow_ray, limit, above);
+            let lit = above & !self.primitives.blocked::<L, F>(&shadow_ray, limit, above, &path, light);
             if !lit.any() {
                 continue;
             }

@@ -1,6 +1,7 @@
 //! The tracer as [`Work`]: any tile of a scene's picture.
 
 use crate::antialiasing::Filter;
+use crate::bundle::Bundle;
 use crate::camera::Camera;
 use crate::formulas::{Arithmetic, Compiled, Family};
 use crate::image::Tile;
@@ -101,6 +102,8 @@ impl Compiled for Picture<'_> {
 struct Tracer<L: Lane, F> {
     world: World<L::Scalar, F>,
     camera: Camera<L::Scalar>,
+    /// Of the primary rays.
+    eye: Bundle<L::Scalar>,
     filter: Filter<L::Scalar>,
     width: u32,
     height: u32,
@@ -113,7 +116,8 @@ impl<L: Lane, F: Family> Tracer<L, F> {
         let &Picture { scene, width, height, share_samples, .. } = picture;
         let filter = Filter::new(&scene.render);
         Self {
-            world: World::new(scene),
+            world: World::new(scene, Some(scene.camera.position)),
+            eye: Bundle::new(scene, scene.camera.position),
             camera: Camera::new(&scene.camera, width, filter.density()),
             filter,
             width,
@@ -123,15 +127,18 @@ impl<L: Lane, F: Family> Tracer<L, F> {
         }
     }
 
-    /// The colour at each place, in packets of neighbours in the list.
-    fn trace(&self, places: &mut Places<L::Scalar>, colors: &mut Colors<L::Scalar>) {
-        let count = places.len();
-        places.pad(L::LANES);
-        colors.resize(places.len());
-        for first in (0..count).step_by(L::LANES) {
-            let (right, down) = places.load::<L>(first);
-            let color = self.world.trace(self.camera.ray(right, down), L::first_lanes(count - first));
-            colors.store(first, color);
+    /// The colour at each place, counted from `(right, down)`, in packets of neighbours in the list.
+    fn trace(
+        &self,
+        places: &Places<L::Scalar>,
+        (right, down): (L::Scalar, L::Scalar),
+        colors: &mut Colors<L::Scalar>,
+    ) {
+        colors.resize(places.len().next_multiple_of(L::LANES));
+        for first in (0..places.len()).step_by(L::LANES) {
+            let (aside, below) = places.load::<L>(first);
+            let ray = self.camera.ray(L::splat(right) + aside, L::splat(down) + below);
+            colors.store(first, self.world.trace(ray, L::first_lanes(places.len() - first), Some(&self.eye)));
         }
     }
 
@@ -147,47 +154,52 @@ impl<L: Lane, F: Family> Tracer<L, F> {
     fn render_alone(&self, tile: &mut Tile<'_>) {
         let area = tile.area();
         let samples = self.filter.len();
-        // A few packets at a time, in blocks of neighbours.
-        let batch = (BATCH / samples).max(1);
+        let mut pixels = Vec::new();
+        for_each_in_blocks(area.width, area.height, |x, y| pixels.push((area.x + x, area.y + y)));
         let (mut places, mut colors) = (Places::default(), Colors::default());
-        let pixels: Vec<(u32, u32)> = blocks(area.width as usize, area.height as usize)
-            .map(|(x, y)| (area.x + x as u32, area.y + y as u32))
-            .collect();
-        for pixels in pixels.chunks(batch) {
+        let zero = L::Scalar::literal(0.0);
+        for pixels in pixels.chunks((BATCH / samples).max(1)) {
             places.clear();
             for &(x, y) in pixels {
                 let (right, down) = (self.centre(x, self.width), self.centre(y, self.height));
-                for (sample_right, sample_down) in self.filter.places() {
-                    places.push(right + sample_right, down + sample_down);
+                for (aside, below) in self.filter.places() {
+                    places.push(right + aside, down + below);
                 }
             }
-            self.trace(&mut places, &mut colors);
+            self.trace(&places, (zero, zero), &mut colors);
             for (i, &(x, y)) in pixels.iter().enumerate() {
-                tile.row_mut((y - area.y) as usize)[(x - area.x) as usize] = self.filter.sum(&colors, i * samples);
+                tile.row_mut((y - area.y) as usize)[(x - area.x) as usize] =
+                    self.filter.sum(&colors, i * samples);
             }
         }
     }
 
     /// The lattice over the tile and around it, each point traced once.
     fn render_shared(&self, tile: &mut Tile<'_>, weights: &[L::Scalar]) {
-        let area = tile.area();
-        let (width, height) = (area.width as usize, area.height as usize);
-        let density = self.filter.density() as usize;
-        let (columns, rows) = (density * (width + 1) + 1, density * (height + 1) + 1);
-        let half_steps = |i: usize| Scalar::from_f64(2.0 * (i as f64 - density as f64));
+        let (area, density) = (tile.area(), self.filter.density());
+        let (columns, rows) = (density * (area.width + 1) + 1, density * (area.height + 1) + 1);
+        let half_steps = |i: u32| L::Scalar::from_f64(2.0 * (f64::from(i) - f64::from(density)));
         let (left, top) = (self.centre(area.x, self.width), self.centre(area.y, self.height));
         let (mut places, mut colors) = (Places::default(), Colors::default());
-        let mut sums = LatticeSums::new(weights, density, width, BLOCK);
-        for first_row in (0..rows).step_by(BLOCK) {
+        let mut sums = LatticeSums::new(weights, density as usize, area.width as usize);
+        let mut height = 0;
+        for first_row in (0..rows).step_by(BLOCK as usize) {
+            // All strips of a tile have the same places but the last, which may be lower.
             let strip = BLOCK.min(rows - first_row);
-            places.clear();
-            for (column, row) in blocks(columns, strip) {
-                places.push(left + half_steps(column), top + half_steps(first_row + row));
+            if strip != height {
+                height = strip;
+                places.clear();
+                sums.start_strip(strip as usize);
+                for_each_in_blocks(columns, strip, |column, row| {
+                    places.push(half_steps(column), half_steps(row));
+                    sums.expect(column as usize, row as usize);
+                });
             }
-            self.trace(&mut places, &mut colors);
-            sums.fill(blocks(columns, strip), &colors);
-            for row in 0..strip {
-                sums.add_row(row, first_row + row, tile);
+            let down = L::Scalar::from_f64(2.0 * f64::from(first_row));
+            self.trace(&places, (left, top + down), &mut colors);
+            sums.fill(&colors);
+            for row in first_row..first_row + strip {
+                sums.add_row((row - first_row) as usize, row as usize, tile);
             }
         }
     }
@@ -197,16 +209,20 @@ impl<L: Lane, F: Family> Tracer<L, F> {
 const BATCH: usize = 1024;
 
 /// The side of a block of neighbours: of a packet of 16.
-const BLOCK: usize = 4;
+const BLOCK: u32 = 4;
 
-/// The places of a rectangle, block by block, so that those next to each other in the list are also next to each
-/// other in the picture.
-fn blocks(width: usize, height: usize) -> impl Iterator<Item = (usize, usize)> {
-    (0..height).step_by(BLOCK).flat_map(move |top| {
-        (0..width).step_by(BLOCK).flat_map(move |left| {
-            (top..height.min(top + BLOCK)).flat_map(move |y| (left..width.min(left + BLOCK)).map(move |x| (x, y)))
-        })
-    })
+/// Column and row of each place in a rectangle, block by block: those that follow each other are neighbours.
+#[inline(always)]
+fn for_each_in_blocks(width: u32, height: u32, mut place: impl FnMut(u32, u32)) {
+    for top in (0..height).step_by(BLOCK as usize) {
+        for left in (0..width).step_by(BLOCK as usize) {
+            for y in top..height.min(top + BLOCK) {
+                for x in left..width.min(left + BLOCK) {
+                    place(x, y);
+                }
+            }
+        }
+    }
 }
 
 impl<L: Lane, F: Family> Work for Tracer<L, F> {

@@ -24,6 +24,11 @@ impl<L: Lane> Vector<L> {
     }
 
     #[inline(always)]
+    pub(crate) fn to_array(self) -> [L; 3] {
+        [self.x, self.y, self.z]
+    }
+
+    #[inline(always)]
     pub(crate) fn zero() -> Self {
         Self::new(L::literal(0.0), L::literal(0.0), L::literal(0.0))
     }
@@ -56,7 +61,17 @@ impl<L: Lane> Vector<L> {
         )
     }
 
-    /// Component by component.
+    /// Component by component, as the following.
+    #[inline(always)]
+    pub(crate) fn min(self, other: Self) -> Self {
+        Self::new(self.x.min(other.x), self.y.min(other.y), self.z.min(other.z))
+    }
+
+    #[inline(always)]
+    pub(crate) fn max(self, other: Self) -> Self {
+        Self::new(self.x.max(other.x), self.y.max(other.y), self.z.max(other.z))
+    }
+
     #[inline(always)]
     pub(crate) fn scale(self, other: Self) -> Self {
         Self::new(self.x * other.x, self.y * other.y, self.z * other.z)

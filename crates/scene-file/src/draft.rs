@@ -9,8 +9,8 @@ use rayweave_core::scene::{Camera, Cylinder, Light, Material, Plane, RenderSetti
 use crate::error::{Problem, Refusal};
 use crate::fields::{Field, Fields};
 use crate::mesh::{Mesh, Triangles};
-use crate::scene::{self, ImageSize, SceneFile};
 use crate::phrase;
+use crate::scene::{self, ImageSize, SceneFile};
 
 /// The keys at the top of a scene file.
 const KEYS: [&str; 10] =
@@ -63,7 +63,11 @@ impl Draft {
         part.each("triangle", &mut self.triangles, |fields| scene::triangle(fields, mentions))?;
         part.each("mesh", &mut self.meshes, |fields| scene::mesh(fields, mentions))?;
         part.each("cylinder", &mut self.cylinders, |fields| scene::cylinder(fields, mentions))?;
-        self.closed.extend(part.iter().filter(|(_, field)| !field.is_open()).map(|(key, _)| key.to_owned()));
+        let grows = |key: &str, field: &Field| {
+            (key == "material" || ENTRIES.contains(&key)) && field.is_under_headers()
+        };
+        let closed = part.iter().filter(|(key, field)| !grows(key, field)).map(|(key, _)| key.to_owned());
+        self.closed.extend(closed);
         Ok(())
     }
 
@@ -79,9 +83,8 @@ impl Draft {
 
     /// The scene, now that the whole file is read, with the meshes that lie in `folder`.
     pub(crate) fn finish(self, folder: Option<&Path>) -> Result<SceneFile, Refusal> {
-        let camera = self.camera.ok_or_else(|| {
-            Problem::of_key(0, "camera".into(), "missing, but required".into())
-        })?;
+        let camera =
+            self.camera.ok_or_else(|| Problem::of_key(0, "camera".into(), "missing, but required".into()))?;
         let index = self.mentions.resolve(&self.materials)?;
         let mut triangles = Triangles::after(self.triangles);
         for mesh in self.meshes {
@@ -132,7 +135,8 @@ impl Mentions {
     /// Of each number the place of its material among all that there are.
     fn resolve(self, materials: &BTreeMap<String, Material>) -> Result<Vec<usize>, Problem> {
         let places: BTreeMap<&str, usize> = materials.keys().map(String::as_str).zip(0..).collect();
-        let mut names: Vec<(&str, usize)> = self.numbers.iter().map(|(name, &number)| (name.as_str(), number)).collect();
+        let mut names: Vec<(&str, usize)> =
+            self.numbers.iter().map(|(name, &number)| (name.as_str(), number)).collect();
         names.sort_unstable_by_key(|&(_, number)| number);
         let mut resolved = Vec::with_capacity(names.len());
         for ((name, _), problem) in names.into_iter().zip(self.unknown) {

@@ -109,7 +109,7 @@ impl<'a> Fields<'a> {
             return Err(field.expected(&format!("any number of [[{}]]", field.path)));
         };
         entries.reserve(items.len());
-        for item in items.iter() {
+        for item in &items[..] {
             // Entries count from the beginning of the file, not of this part of it.
             entries.push(read(&field.item(entries.len(), item).table()?)?);
         }
@@ -191,8 +191,8 @@ impl<'a> Field<'a> {
         phrase::shortened(self.text())
     }
 
-    /// Whether a table or array is written under headers, so that further headers may add to it.
-    pub(crate) fn is_open(&self) -> bool {
+    /// Whether a table or array is not written inline, so that headers may add to it.
+    pub(crate) fn is_under_headers(&self) -> bool {
         match self.value.get_ref() {
             DeValue::Array(_) => self.text().starts_with("[["),
             DeValue::Table(_) => !self.text().starts_with('{'),

@@ -42,7 +42,8 @@ impl Mesh {
         if path.as_os_str().is_empty() || !path.components().all(down) {
             return Err(field.expected("a path in the folder of the scene file, without `..`"));
         }
-        let empty = format!("expected an OBJ file with a triangle that has an area, found {}", field.written());
+        let empty =
+            format!("expected an OBJ file with a triangle that has an area, found {}", field.written());
         Ok(Self { path, material, empty: field.problem(empty) })
     }
 
@@ -69,12 +70,17 @@ impl Triangles {
 
     fn add(&mut self, vertices: [DVec3; 3], material: usize) -> Result<(), String> {
         let Some(left) = self.left.checked_sub(1) else {
-            return Err(format!("more than the {MAX_MESH_TRIANGLES} triangles that the meshes of a scene may have"));
+            return Err(format!(
+                "more than the {MAX_MESH_TRIANGLES} triangles that the meshes of a scene may have"
+            ));
         };
         self.left = left;
         let triangle = Triangle { vertices, material };
         // The vertices are finite: all that can be wrong is the area.
-        if triangle.check().is_ok() { self.kept.push(triangle) } else { self.skipped += 1 }
+        match triangle.check() {
+            Ok(()) => self.kept.push(triangle),
+            Err(_) => self.skipped += 1,
+        }
         Ok(())
     }
 }

@@ -1,11 +1,10 @@
 //! The part of Wavefront OBJ that a mesh is made of: vertices and faces.
 //!
 //! Read by hand, because no library keeps to what a scene file promises. `tobj` and `obj-rs` do not say
-//! in which line a fault is, and the latter gives up on curves; `obj` and `wavefront_obj` refuse kinds of
-//! lines that they do not know; the indices of a face are checked against the whole file rather than
-//! against what is above the line; and some compute in `f32`.
+//! in which line a fault is, and the first takes vertices from below a face; `obj` computes in `f32` and
+//! takes any index and number of corners; `wavefront_obj` refuses lines of a kind that it does not know.
 
-use std::ops::ControlFlow;
+use std::str::FromStr;
 
 use glam::DVec3;
 
@@ -28,27 +27,82 @@ impl Fault {
 }
 
 /// Hands every triangle of the file to `add`: face by face, each a fan around its first corner.
-pub(crate) fn read(
-    bytes: &[u8],
-    mut add: impl FnMut([DVec3; 3]) -> Result<(), String>,
-) -> Result<(), Fault> {
+pub(crate) fn read(bytes: &[u8], mut add: impl FnMut([DVec3; 3]) -> Result<(), String>) -> Result<(), Fault> {
     let mut vertices = Vec::new();
-    // A byte order mark would hide the first line from its keyword.
+    // A byte order mark would hide the keyword of the first line.
     let text = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes);
     for line in text.split(|&byte| byte == b'\n') {
-        let line = line.split(|&byte| byte == b'#').next().unwrap_or_default();
-        let mut words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
-        let Some(keyword) = words.next() else { continue };
-        let read = match keyword {
-            b"v" => vertex(words).map(|vertex| vertices.push(vertex)),
-            b"f" => face(words, &vertices, &mut add),
+        let line = line.split(|&byte| byte == b'#').next().unwrap_or_default().trim_ascii();
+        let read = match words(line).next() {
+            Some(b"v") => vertex(line).map(|vertex| vertices.push(vertex)),
+            Some(b"f") => face(line, &vertices, &mut add),
             _ => Ok(()),
         };
-        read.map_err(|(word, message)| {
-            let at = word.unwrap_or(keyword);
-            let offset = at.first().and_then(|byte| bytes.element_offset(byte)).unwrap_or_default();
-            Fault { offset, message }
+        read.map_err(|(place, message)| {
+            let offset = place.first().and_then(|byte| bytes.element_offset(byte));
+            Fault { offset: offset.unwrap_or_default(), message }
         })?;
     }
     Ok(())
+}
+
+/// A fault and the part of the line that it is in.
+type Located<'a> = (&'a [u8], String);
+
+/// The vertex of a line `v x y z`. Whatever comes after is no matter.
+fn vertex(line: &[u8]) -> Result<DVec3, Located<'_>> {
+    let mut numbers = words(line).skip(1);
+    let mut number = || {
+        let Some(word) = numbers.next() else {
+            return Err((line, format!("expected `v` and three numbers, found {}", shown(line))));
+        };
+        let number = parsed(word).filter(|number: &f64| number.is_finite());
+        number.ok_or_else(|| (word, format!("expected a finite number, found {}", shown(word))))
+    };
+    Ok(DVec3::new(number()?, number()?, number()?))
+}
+
+/// Hands the triangles of a line `f p1 p2 p3 ...` to `add`.
+fn face<'a>(
+    line: &'a [u8],
+    vertices: &[DVec3],
+    add: &mut impl FnMut([DVec3; 3]) -> Result<(), String>,
+) -> Result<(), Located<'a>> {
+    let mut corners = words(line).skip(1).map(|word| corner(word, vertices));
+    let (Some(first), Some(second), Some(third)) = (corners.next(), corners.next(), corners.next()) else {
+        return Err((line, format!("expected `f` and three corners or more, found {}", shown(line))));
+    };
+    let (first, mut last) = (first?, second?);
+    for next in std::iter::once(third).chain(corners) {
+        let next = next?;
+        add([first, last, next]).map_err(|message| (line, message))?;
+        last = next;
+    }
+    Ok(())
+}
+
+/// The vertex that a corner names, by its number or by how far above the line it is. Texture and
+/// normal, behind a slash, are no matter.
+fn corner<'a>(word: &'a [u8], vertices: &[DVec3]) -> Result<DVec3, Located<'a>> {
+    let number = word.split(|&byte| byte == b'/').next().and_then(parsed::<i64>);
+    let index = number.and_then(|number| {
+        let distance = usize::try_from(number.unsigned_abs()).ok()?;
+        if number < 0 { vertices.len().checked_sub(distance) } else { distance.checked_sub(1) }
+    });
+    index.and_then(|index| vertices.get(index)).copied().ok_or_else(|| {
+        let count = vertices.len();
+        (word, format!("expected the number of one of the {count} vertices above, found {}", shown(word)))
+    })
+}
+
+fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
+    line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty())
+}
+
+fn parsed<T: FromStr>(word: &[u8]) -> Option<T> {
+    str::from_utf8(word).ok()?.parse().ok()
+}
+
+fn shown(part: &[u8]) -> String {
+    format!("`{}`", phrase::shortened(&String::from_utf8_lossy(part)))
 }

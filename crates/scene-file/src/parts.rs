@@ -12,10 +12,10 @@ use crate::draft::{Draft, ENTRIES};
 use crate::error::Problem;
 use crate::fields::{Fields, Source};
 
-/// The bytes after which a part is cut off: enough to be worth it, and little enough for the caches.
-const USUAL: usize = 32 << 10;
-/// The longest part: parsing it takes about a gigabyte.
-pub(crate) const LONGEST: usize = 32 << 20;
+/// The bytes after which a part is cut off: so few that all about them stays in the caches.
+const USUAL: usize = 8 << 10;
+/// The longest part: parsing it takes 2.5 GB at the worst.
+const LONGEST: usize = 32 << 20;
 
 /// Reads the whole document.
 pub(crate) fn read(text: &str) -> Result<Draft, Problem> {
@@ -42,15 +42,10 @@ fn part(text: &str, start: usize) -> Result<(Source<'_>, DeTable<'_>), Problem> 
         let part = &rest[..end];
         match DeTable::parse(part) {
             Ok(table) => return Ok((Source { text: part, start }, table.into_inner())),
-            // An error that ends before the part does stays, whatever follows.
-            Err(error)
-                if end == rest.len()
-                    || 16 * end > LONGEST
-                    || error.span().is_some_and(|span| span.end < end) =>
-            {
+            Err(error) if end == rest.len() || end >= LONGEST / 2 => {
                 return Err(Problem::syntax(&error, part).after(start));
             }
-            Err(_) => least = 16 * end,
+            Err(_) => least = (16 * end).min(LONGEST / 2),
         }
     }
 }

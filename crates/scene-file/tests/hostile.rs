@@ -121,7 +121,7 @@ fn what_is_no_file_of_a_sane_size_is_not_read() {
     // Sparse: it has a length, but takes no room.
     let large = folder.path().join("large.toml");
     File::create(&large).and_then(|file| file.set_len(MAX_BYTES + 1)).expect("a sparse file");
-    assert_eq!(unloadable(&large), "larger than the 32 MiB that a scene file may have");
+    assert_eq!(unloadable(&large), "larger than the 256 MiB that a file may have");
 }
 
 #[cfg(unix)]

@@ -13,13 +13,12 @@ use crate::lane::{Lane, Scalar};
 use crate::precision::Precision;
 use crate::ray::Ray;
 use crate::shapes::SurfacePoint;
-use crate::shapes::cylinder::Cylinder;
+use crate::shapes::cylinder::{self, Cylinder};
 use crate::shapes::plane::Plane;
-use crate::shapes::sphere::Sphere;
-use crate::shapes::triangle::Triangle;
+use crate::shapes::sphere::{self, Sphere};
+use crate::shapes::triangle::{self, Triangle};
 use crate::vector::Vector;
 use std::fmt::{self, Debug};
-use std::ops::ControlFlow;
 
 /// Which formulas a tracer uses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -86,38 +85,31 @@ impl fmt::Display for Formulas {
 
 /// A family of formulas, as the tracer is compiled for it.
 ///
-/// Each of the first four shows `found` every shape's place in its slice, in order, and the smallest
-/// `t` that counts as a hit, or [`miss`](crate::ray::miss), until `found` has seen enough.
+/// The first four give the smallest `t` that counts as a hit, or [`miss`](crate::ray::miss); so too for rays that
+/// are not in `wanted`, which need not be computed.
 pub(crate) trait Family: Debug + Send + Sync + 'static {
-    fn planes<L: Lane>(
-        planes: &[Plane<L::Scalar>],
-        ray: &Ray<L>,
-        found: &mut impl FnMut(usize, L) -> ControlFlow<()>,
-    ) -> ControlFlow<()>;
+    /// Whether the formulas err by no more than a few roundings of the coordinates. Then boxes that are larger by
+    /// some more of them are missed by no hit, and nothing is hit behind a plane.
+    const FAITHFUL: bool;
 
-    fn spheres<L: Lane>(
-        spheres: &[Sphere<L::Scalar>],
-        ray: &Ray<L>,
-        found: &mut impl FnMut(usize, L) -> ControlFlow<()>,
-    ) -> ControlFlow<()>;
-
-    fn triangles<L: Lane>(
-        triangles: &[Triangle<L::Scalar>],
-        ray: &Ray<L>,
-        found: &mut impl FnMut(usize, L) -> ControlFlow<()>,
-    ) -> ControlFlow<()>;
-
-    fn cylinders<L: Lane>(
-        cylinders: &[Cylinder<L::Scalar>],
-        ray: &Ray<L>,
-        found: &mut impl FnMut(usize, L) -> ControlFlow<()>,
-    ) -> ControlFlow<()>;
+    fn plane<L: Lane>(plane: &Plane<L::Scalar>, ray: &Ray<L>) -> L;
+    fn sphere<L: Lane>(sphere: &Sphere<L::Scalar>, ray: &Ray<L>, aim: &sphere::Aim<L>, wanted: L::Mask) -> L;
+    fn triangle<L: Lane>(triangle: &Triangle<L::Scalar>, ray: &Ray<L>, aim: &triangle::Aim<L>, wanted: L::Mask) -> L;
+    fn cylinder<L: Lane>(cylinder: &Cylinder<L::Scalar>, ray: &Ray<L>, aim: &cylinder::Aim<L>, wanted: L::Mask) -> L;
 
     /// What becomes of the hit `near` a surface, given the surface's own point next to it.
     fn settle<L: Lane>(near: Vector<L>, on_surface: SurfacePoint<L>) -> SurfacePoint<L>;
 
     /// The ray along a path to a light, and the `t` that a surface has to be nearer than to hide it.
     fn shadow_ray<L: Lane>(path: &LightPath<L>) -> (Ray<L>, L);
+}
+
+/// What of a ray is the same for all shapes of a kind: computed once, for kinds that are there.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Aim<L: Lane> {
+    pub(crate) sphere: sphere::Aim<L>,
+    pub(crate) triangle: triangle::Aim<L>,
+    pub(crate) cylinder: cylinder::Aim<L>,
 }
 
 /// The way from a surface to a light.

@@ -4,12 +4,11 @@ use super::{Family, LightPath};
 use crate::lane::{Lane, Mask};
 use crate::ray::{Ray, miss};
 use crate::shapes::SurfacePoint;
-use crate::shapes::cylinder::Cylinder;
+use crate::shapes::cylinder::{self, Cylinder};
 use crate::shapes::plane::Plane;
-use crate::shapes::sphere::Sphere;
-use crate::shapes::triangle::Triangle;
+use crate::shapes::sphere::{self, Sphere};
+use crate::shapes::triangle::{self, Triangle};
 use crate::vector::Vector;
-use std::ops::ControlFlow;
 
 /// The family of [`Formulas::Textbook`](super::Formulas::Textbook).
 #[derive(Debug)]
@@ -20,77 +19,55 @@ pub(crate) struct Textbook;
 const OFFSET: f64 = 1e-3;
 
 impl Family for Textbook {
+    const FAITHFUL: bool = false;
+
     #[inline(always)]
-    fn planes<L: Lane>(
-        planes: &[Plane<L::Scalar>],
-        ray: &Ray<L>,
-        found: &mut impl FnMut(usize, L) -> ControlFlow<()>,
-    ) -> ControlFlow<()> {
-        planes.iter().enumerate().try_for_each(|(i, plane)| {
-            let t = plane_root(Vector::splat(plane.point), Vector::splat(plane.normal), ray);
-            found(i, L::select(beyond_offset(t), t, miss()))
-        })
+    fn plane<L: Lane>(plane: &Plane<L::Scalar>, ray: &Ray<L>) -> L {
+        let t = plane_root(Vector::splat(plane.point), Vector::splat(plane.normal), ray);
+        L::select(beyond_offset(t), t, miss())
     }
 
     #[inline(always)]
-    fn spheres<L: Lane>(
-        spheres: &[Sphere<L::Scalar>],
-        ray: &Ray<L>,
-        found: &mut impl FnMut(usize, L) -> ControlFlow<()>,
-    ) -> ControlFlow<()> {
-        spheres.iter().enumerate().try_for_each(|(i, sphere)| {
-            let from_center = ray.origin - Vector::splat(sphere.center);
-            let a = ray.direction.dot(ray.direction);
-            let b = L::literal(2.0) * from_center.dot(ray.direction);
-            let c = from_center.dot(from_center) - L::splat(sphere.radius * sphere.radius);
-            found(i, first_root(a, b, c, beyond_offset))
-        })
+    fn sphere<L: Lane>(sphere: &Sphere<L::Scalar>, ray: &Ray<L>, _aim: &sphere::Aim<L>, wanted: L::Mask) -> L {
+        let from_center = ray.origin - Vector::splat(sphere.center);
+        let a = ray.direction.dot(ray.direction);
+        let b = L::literal(2.0) * from_center.dot(ray.direction);
+        let c = from_center.dot(from_center) - L::splat(sphere.radius * sphere.radius);
+        first_root(a, b, c, wanted, beyond_offset)
     }
 
     /// The plane, then on which side of each edge the point lies: three cross products. The point is off
     /// by some `4u` of its coordinates and `t |d|`, differently for each triangle: an edge that two share
     /// may belong to neither.
     #[inline(always)]
-    fn triangles<L: Lane>(
-        triangles: &[Triangle<L::Scalar>],
-        ray: &Ray<L>,
-        found: &mut impl FnMut(usize, L) -> ControlFlow<()>,
-    ) -> ControlFlow<()> {
-        triangles.iter().enumerate().try_for_each(|(i, triangle)| {
-            let [a, b, c] = triangle.vertices.map(Vector::splat);
-            let normal = Vector::splat(triangle.normal);
-            let t = plane_root(a, normal, ray);
-            let in_front = beyond_offset(t);
-            if !in_front.any() {
-                return found(i, miss());
-            }
-            let point = ray.at(t);
-            let within = |from: Vector<L>, to: Vector<L>| {
-                L::literal(0.0).le(normal.dot((to - from).cross(point - from)))
-            };
-            found(i, L::select(in_front & within(a, b) & within(b, c) & within(c, a), t, miss()))
-        })
+    fn triangle<L: Lane>(triangle: &Triangle<L::Scalar>, ray: &Ray<L>, _aim: &triangle::Aim<L>, wanted: L::Mask) -> L {
+        let [a, b, c] = triangle.vertices.map(Vector::splat);
+        let normal = Vector::splat(triangle.normal);
+        let t = plane_root(a, normal, ray);
+        let in_front = wanted & beyond_offset(t);
+        if !in_front.any() {
+            return miss();
+        }
+        let point = ray.at(t);
+        let within = |from: Vector<L>, to: Vector<L>| {
+            L::literal(0.0).le(normal.dot((to - from).cross(point - from)))
+        };
+        L::select(in_front & within(a, b) & within(b, c) & within(c, a), t, miss())
     }
 
     #[inline(always)]
-    fn cylinders<L: Lane>(
-        cylinders: &[Cylinder<L::Scalar>],
-        ray: &Ray<L>,
-        found: &mut impl FnMut(usize, L) -> ControlFlow<()>,
-    ) -> ControlFlow<()> {
-        cylinders.iter().enumerate().try_for_each(|(i, cylinder)| {
-            let (bottom, top) = (Vector::splat(cylinder.bottom), L::splat(cylinder.top));
-            let (x, z) = (ray.origin.x - bottom.x, ray.origin.z - bottom.z);
-            let Vector { x: dx, y: dy, z: dz } = ray.direction;
-            let a = dx * dx + dz * dz;
-            let b = L::literal(2.0) * (x * dx + z * dz);
-            let c = x * x + z * z - L::splat(cylinder.radius * cylinder.radius);
-            let on_wall = |t: L| {
-                let y = ray.origin.y + dy * t;
-                beyond_offset(t) & bottom.y.le(y) & y.le(top)
-            };
-            found(i, first_root(a, b, c, on_wall))
-        })
+    fn cylinder<L: Lane>(cylinder: &Cylinder<L::Scalar>, ray: &Ray<L>, _aim: &cylinder::Aim<L>, wanted: L::Mask) -> L {
+        let (bottom, top) = (Vector::splat(cylinder.bottom), L::splat(cylinder.top));
+        let (x, z) = (ray.origin.x - bottom.x, ray.origin.z - bottom.z);
+        let Vector { x: dx, y: dy, z: dz } = ray.direction;
+        let a = dx * dx + dz * dz;
+        let b = L::literal(2.0) * (x * dx + z * dz);
+        let c = x * x + z * z - L::splat(cylinder.radius * cylinder.radius);
+        let on_wall = |t: L| {
+            let y = ray.origin.y + dy * t;
+            beyond_offset(t) & bottom.y.le(y) & y.le(top)
+        };
+        first_root(a, b, c, wanted, on_wall)
     }
 
     /// The hit stays where `t` says, and rays leave from there.
@@ -119,9 +96,9 @@ fn plane_root<L: Lane>(point: Vector<L>, normal: Vector<L>, ray: &Ray<L>) -> L {
 /// `8u b^2`, whatever is left of it, and so may be all of the root. A ray along a cylinder's axis has
 /// `a = 0`, and NaN or infinities for roots.
 #[inline(always)]
-fn first_root<L: Lane>(a: L, b: L, c: L, counts: impl Fn(L) -> L::Mask) -> L {
+fn first_root<L: Lane>(a: L, b: L, c: L, wanted: L::Mask, counts: impl Fn(L) -> L::Mask) -> L {
     let discriminant = b * b - L::literal(4.0) * a * c;
-    let real = L::literal(0.0).le(discriminant);
+    let real = wanted & L::literal(0.0).le(discriminant);
     if !real.any() {
         return miss();
     }

@@ -4,6 +4,7 @@ use super::{SurfacePoint, clearance, quadric};
 use crate::lane::{Lane, Mask, Scalar};
 use crate::ray::{Ray, miss};
 use crate::scene;
+use crate::tree::Bounds;
 use crate::vector::Vector;
 
 #[derive(Clone, Copy, Debug)]
@@ -17,7 +18,7 @@ pub(crate) struct Cylinder<S> {
 }
 
 /// What all cylinders ask of a ray.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Aim<L> {
     /// Of the direction's part across the axis. Infinite for a ray along the axis, which then
     /// gives NaN and so a miss.
@@ -25,6 +26,12 @@ pub(crate) struct Aim<L> {
 }
 
 impl<L: Lane> Aim<L> {
+    /// Where there are no cylinders.
+    #[inline(always)]
+    pub(crate) fn none() -> Self {
+        Self { inverse_square: L::literal(0.0) }
+    }
+
     #[inline(always)]
     pub(crate) fn new(ray: &Ray<L>) -> Self {
         let Vector { x, z, .. } = ray.direction;
@@ -43,10 +50,16 @@ impl<S: Scalar> Cylinder<S> {
         }
     }
 
+    pub(crate) fn bounds(&self) -> Bounds<S> {
+        let across = Vector::new(self.radius, S::literal(0.0), self.radius);
+        let top = Vector { y: self.top, ..self.bottom };
+        Bounds { low: self.bottom - across, high: top + across }
+    }
+
     /// The smaller of the [roots](quadric::roots) above 0 that are on the wall: both are tried, because the
     /// far wall is seen through the open end. The discriminant's error is the sphere's, in x and z.
     #[inline(always)]
-    pub(crate) fn intersect<L: Lane<Scalar = S>>(&self, ray: &Ray<L>, aim: &Aim<L>) -> L {
+    pub(crate) fn intersect<L: Lane<Scalar = S>>(&self, ray: &Ray<L>, aim: &Aim<L>, wanted: L::Mask) -> L {
         let zero = L::literal(0.0);
         let radius_squared = L::splat(self.radius_squared);
         let Vector { x: dx, y: dy, z: dz } = ray.direction;
@@ -54,12 +67,17 @@ impl<S: Scalar> Cylinder<S> {
         let closest = (cx * dx + cz * dz) * aim.inverse_square;
         let (ax, az) = (cx - dx * closest, cz - dz * closest);
         let discriminant = radius_squared - (ax * ax + az * az);
-        let crossed = zero.le(discriminant);
+        let crossed = wanted & zero.le(discriminant);
         if !crossed.any() {
             return miss();
         }
         let closest = closest + (ax * dx + az * dz) * aim.inverse_square;
         let power = (cx * cx + cz * cz) - radius_squared;
+        // Behind a ray that starts outside: both roots are below 0.
+        let crossed = crossed & !(closest.lt(zero) & zero.lt(power));
+        if !crossed.any() {
+            return miss();
+        }
         let (near, far) = quadric::roots(closest, discriminant, power, aim.inverse_square);
         // Differences first, as everywhere.
         let (to_bottom, to_top) = (L::splat(self.bottom.y) - ray.origin.y, L::splat(self.top) - ray.origin.y);

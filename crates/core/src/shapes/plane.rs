@@ -14,14 +14,22 @@ pub(crate) struct Plane<S> {
     /// a ray that starts in the plane would hit it.
     pub(crate) normal: Vector<S>,
     unit_normal: Vector<S>,
+    /// Of which axis the normal has nothing but this component, if so.
+    across: Option<usize>,
 }
 
 impl<S: Scalar> Plane<S> {
     pub(crate) fn new(plane: &scene::Plane) -> Self {
+        let normal = Vector::<S>::rounded(scene::near_one(plane.normal));
+        let zero = S::literal(0.0);
+        let others_are_zero = |axis: &usize| {
+            normal.to_array().iter().enumerate().all(|(i, n)| i == *axis || n.equals(zero))
+        };
         Self {
             point: Vector::rounded(plane.point),
-            normal: Vector::rounded(scene::near_one(plane.normal)),
+            normal,
             unit_normal: Vector::rounded(scene::unit(plane.normal)),
+            across: (0..3).find(others_are_zero),
         }
     }
 
@@ -32,8 +40,18 @@ impl<S: Scalar> Plane<S> {
     /// 2002, 3.1): at most `4u sum |n_i (point_i - o_i)| / |n . (point - o)| + 3u sum |n_i d_i| / |n . d| + u`.
     #[inline(always)]
     pub(crate) fn intersect<L: Lane<Scalar = S>>(&self, ray: &Ray<L>) -> L {
-        let normal = Vector::splat(self.normal);
-        let t = normal.dot(Vector::splat(self.point) - ray.origin) / normal.dot(ray.direction);
+        let t = match self.across {
+            // The other products are zeros, which change no sum.
+            Some(axis) => {
+                let [normal, point] = [self.normal, self.point].map(|v| L::splat(v.to_array()[axis]));
+                let [origin, direction] = [ray.origin, ray.direction].map(|v| v.to_array()[axis]);
+                normal * (point - origin) / (normal * direction)
+            }
+            None => {
+                let normal = Vector::splat(self.normal);
+                normal.dot(Vector::splat(self.point) - ray.origin) / normal.dot(ray.direction)
+            }
+        };
         L::select(L::literal(0.0).lt(t), t, miss())
     }
 

@@ -4,6 +4,7 @@ use super::{SurfacePoint, clearance, quadric};
 use crate::lane::{Lane, Mask, Scalar};
 use crate::ray::{Ray, miss};
 use crate::scene;
+use crate::tree::Bounds;
 use crate::vector::Vector;
 
 #[derive(Clone, Copy, Debug)]
@@ -14,12 +15,18 @@ pub(crate) struct Sphere<S> {
 }
 
 /// What all spheres ask of a ray.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Aim<L> {
     inverse_square: L,
 }
 
 impl<L: Lane> Aim<L> {
+    /// Where there are no spheres.
+    #[inline(always)]
+    pub(crate) fn none() -> Self {
+        Self { inverse_square: L::literal(0.0) }
+    }
+
     #[inline(always)]
     pub(crate) fn new(ray: &Ray<L>) -> Self {
         Self { inverse_square: L::literal(1.0) / ray.direction.dot(ray.direction) }
@@ -32,26 +39,36 @@ impl<S: Scalar> Sphere<S> {
         Self { center: Vector::rounded(sphere.center), radius, radius_squared: radius * radius }
     }
 
+    pub(crate) fn bounds(&self) -> Bounds<S> {
+        let reach = Vector::new(self.radius, self.radius, self.radius);
+        Bounds { low: self.center - reach, high: self.center + reach }
+    }
+
     /// The smaller of the [roots](quadric::roots) above 0.
     ///
     /// The point nearest to the centre `c` of a ray from 0 is found to about `8u |c|`, and so the discriminant
     /// to about `16u |c| / r` of `r^2`. In `b^2 - 4ac` it would be `8u (|c| / r)^2`: of a sphere 4,000 radii
     /// away nothing is left of it in `f32`.
     #[inline(always)]
-    pub(crate) fn intersect<L: Lane<Scalar = S>>(&self, ray: &Ray<L>, aim: &Aim<L>) -> L {
+    pub(crate) fn intersect<L: Lane<Scalar = S>>(&self, ray: &Ray<L>, aim: &Aim<L>, wanted: L::Mask) -> L {
         let zero = L::literal(0.0);
         let radius_squared = L::splat(self.radius_squared);
         let to_center = Vector::splat(self.center) - ray.origin;
         let closest = to_center.dot(ray.direction) * aim.inverse_square;
         let aside = to_center - ray.direction * closest;
         let discriminant = radius_squared - aside.dot(aside);
-        let crossed = zero.le(discriminant);
+        let crossed = wanted & zero.le(discriminant);
         if !crossed.any() {
             return miss();
         }
         // What is left of the point along the ray is the error of `closest`: it is told at little cost.
         let closest = closest + aside.dot(ray.direction) * aim.inverse_square;
         let power = to_center.dot(to_center) - radius_squared;
+        // Behind a ray that starts outside: both roots are below 0.
+        let crossed = crossed & !(closest.lt(zero) & zero.lt(power));
+        if !crossed.any() {
+            return miss();
+        }
         let (near, far) = quadric::roots(closest, discriminant, power, aim.inverse_square);
         let t = L::select(zero.lt(near), near, far);
         L::select(crossed & zero.lt(t), t, miss())

@@ -4,6 +4,7 @@ use super::{SurfacePoint, clearance};
 use crate::lane::{Lane, Mask, Scalar, sign_of_difference};
 use crate::ray::{Ray, miss};
 use crate::scene;
+use crate::tree::Bounds;
 use crate::vector::Vector;
 use glam::DVec3;
 
@@ -18,49 +19,66 @@ pub(crate) struct Triangle<S> {
     reach: Vector<S>,
 }
 
-/// The axis along which a ray's direction is longest: x, y or z for 0, 1 or 2.
-pub(crate) const AXES: usize = 3;
+/// What all triangles ask of a ray: the shear that turns it into the axis along which its direction is longest.
+/// Triangles are then tested in the two other coordinates.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Aim<L: Lane> {
+    /// The rays of a packet by that axis; similar ones are all in one group.
+    groups: [Option<Group<L>>; 3],
+}
 
-/// What all triangles ask of a ray whose direction is longest along `AXIS`: the shear that turns
-/// the ray into that axis. Triangles are then tested in the two other coordinates.
-#[derive(Clone, Copy)]
-pub(crate) struct Aim<L, const AXIS: usize> {
+/// The rays that are longest along one axis.
+#[derive(Clone, Copy, Debug)]
+struct Group<L: Lane> {
+    /// Which rays these are.
+    members: L::Mask,
+    /// The axes in the order in which coordinates are taken, that of the longest direction last.
+    order: [usize; 3],
+    /// The rays' origin, in this order.
+    origin: [L; 3],
     shear: [L; 2],
-    /// The direction's component along the axis.
+    /// The direction's component along the last axis.
     along: L,
 }
 
-/// For each axis, the mask of rays that are longest along it; every ray belongs to exactly one.
-#[inline(always)]
-pub(crate) fn longest_axis<L: Lane>(direction: Vector<L>) -> [L::Mask; AXES] {
-    let Vector { x, y, z } = direction.abs();
-    let is_x = y.lt(x) & z.lt(x);
-    let is_y = !is_x & z.lt(y);
-    [is_x, is_y, !is_x & !is_y]
-}
-
-/// The coordinates of `v`, that along `AXIS` last.
-#[inline(always)]
-fn turned<L: Lane, const AXIS: usize>(v: Vector<L>) -> [L; 3] {
-    match AXIS {
-        0 => [v.y, v.z, v.x],
-        1 => [v.z, v.x, v.y],
-        _ => [v.x, v.y, v.z],
-    }
-}
-
-impl<L: Lane, const AXIS: usize> Aim<L, AXIS> {
+impl<L: Lane> Aim<L> {
+    /// Where there are no triangles.
     #[inline(always)]
-    pub(crate) fn new(ray: &Ray<L>) -> Self {
-        let [x, y, z] = turned::<L, AXIS>(ray.direction);
-        Self { shear: [x / z, y / z], along: z }
+    pub(crate) fn none() -> Self {
+        Self { groups: [None; 3] }
     }
 
+    /// For the rays of `wanted`: others hit nothing.
+    #[inline(always)]
+    pub(crate) fn new(ray: &Ray<L>, wanted: L::Mask) -> Self {
+        let Vector { x, y, z } = ray.direction.abs();
+        let is_x = wanted & y.lt(x) & z.lt(x);
+        let is_y = wanted & !is_x & z.lt(y);
+        let is_z = wanted & !is_x & !is_y;
+        let group = |members: L::Mask, order: [usize; 3]| {
+            members.any().then(|| {
+                let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
+                let [x, y, z] = order.map(|axis| direction[axis]);
+                Group {
+                    members,
+                    order,
+                    origin: order.map(|axis| origin[axis]),
+                    shear: [x / z, y / z],
+                    along: z,
+                }
+            })
+        };
+        Self { groups: [group(is_x, [1, 2, 0]), group(is_y, [2, 0, 1]), group(is_z, [0, 1, 2])] }
+    }
+}
+
+impl<L: Lane> Group<L> {
     /// Where `v` lies aside of the ray, and how far along the axis. The same rounded point for every
     /// triangle that shares `v`.
     #[inline(always)]
-    fn project(&self, ray: &Ray<L>, v: Vector<L>) -> [L; 3] {
-        let [x, y, z] = turned::<L, AXIS>(v - ray.origin);
+    fn project(&self, v: Vector<L::Scalar>) -> [L; 3] {
+        let coordinates = v.to_array();
+        let [x, y, z] = [0, 1, 2].map(|i| L::splat(coordinates[self.order[i]]) - self.origin[i]);
         [x - self.shear[0] * z, y - self.shear[1] * z, z]
     }
 }
@@ -80,6 +98,11 @@ impl<S: Scalar> Triangle<S> {
         Self { vertices, normal, unit_normal, reach: Vector::rounded(a.abs().max(b.abs()).max(c.abs())) }
     }
 
+    pub(crate) fn bounds(&self) -> Bounds<S> {
+        let [a, b, c] = self.vertices;
+        Bounds { low: a.min(b).min(c), high: a.max(b).max(c) }
+    }
+
     /// The edge test of Woop, Benthin and Wald (Watertight Ray/Triangle Intersection, JCGT 2013):
     /// signs of 2 x 2 determinants of projected corners, which are the same from both sides of a
     /// shared edge. `t` is that of the plane, differences first, its sums in twice the digits, since few
@@ -90,19 +113,22 @@ impl<S: Scalar> Triangle<S> {
     /// error of `t` in `f32`, whose corners `f64` turns into a normal without a loss: at most `2u sum |n_i (a_i - o_i)| / |n . (a - o)| + u sum |n_i d_i| / |n . d| + 3u`: the
     /// rounded normal and differences, then two sums and a quotient rounded once.
     #[inline(always)]
-    pub(crate) fn intersect<L: Lane<Scalar = S>, const AXIS: usize>(
-        &self,
-        ray: &Ray<L>,
-        aim: &Aim<L, AXIS>,
-    ) -> L {
+    pub(crate) fn intersect<L: Lane<Scalar = S>>(&self, ray: &Ray<L>, aim: &Aim<L>, wanted: L::Mask) -> L {
+        aim.groups.iter().flatten().fold(miss(), |t, group| {
+            L::select(group.members, self.intersect_along(ray, group, wanted & group.members), t)
+        })
+    }
+
+    #[inline(always)]
+    fn intersect_along<L: Lane<Scalar = S>>(&self, ray: &Ray<L>, group: &Group<L>, wanted: L::Mask) -> L {
         let zero = L::literal(0.0);
-        let [a, b, c] = self.vertices.map(|v| aim.project(ray, Vector::splat(v)));
+        let [a, b, c] = self.vertices.map(|v| group.project(v));
         let edge = |[px, py, _]: [L; 3], [qx, qy, _]: [L; 3]| sign_of_difference(px, qy, py, qx);
         let (u, v, w) = (edge(b, c), edge(c, a), edge(a, b));
         let front = zero.le(u) & zero.le(v) & zero.le(w);
         let back = u.le(zero) & v.le(zero) & w.le(zero);
         // All three zero: the ray lies in the triangle's plane.
-        let inside = (front | back) & !(front & back);
+        let inside = wanted & (front | back) & !(front & back);
         if !inside.any() {
             return miss();
         }
@@ -110,7 +136,7 @@ impl<S: Scalar> Triangle<S> {
         let slope = normal.accurate_dot(ray.direction);
         let t = normal.accurate_dot(Vector::splat(self.vertices[0]) - ray.origin) / slope;
         let (lowest, highest) = (a[2].min(b[2]).min(c[2]), a[2].max(b[2]).max(c[2]));
-        let (from, to) = (lowest / aim.along, highest / aim.along);
+        let (from, to) = (lowest / group.along, highest / group.along);
         let t = t.max(from.min(to)).min(from.max(to));
         // A ray parallel to the plane, or a triangle without area, misses.
         L::select(inside & zero.lt(slope.abs()) & zero.lt(t), t, miss())

@@ -1,0 +1,78 @@
+//! Rays through one point: all that leave the eye, or that look at one light.
+//!
+//! Seen from that point a primitive fills a cone of directions. Whether a ray is outside of the cone is one dot
+//! product; only the others are tried. The cones are wider than the primitives by more than the errors of what is
+//! tried, so they change no picture.
+
+use crate::lane::{Lane, Scalar};
+use crate::scene::Scene;
+use crate::vector::Vector;
+use glam::DVec3;
+
+/// A cone for each primitive that is not a plane, by kind, in file order.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Bundle<S> {
+    pub(crate) spheres: Vec<Cone<S>>,
+    pub(crate) triangles: Vec<Cone<S>>,
+    pub(crate) cylinders: Vec<Cone<S>>,
+}
+
+/// The directions from the point in which a primitive may be.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cone<S> {
+    axis: Vector<S>,
+    cosine: S,
+    /// What a unit of a ray's length adds: its end is known the less exactly, the farther it is.
+    widening: S,
+}
+
+/// Roundings by which a cone is wider than its primitive; the shapes' own errors are at most 31, see `tree`.
+const MARGIN: f64 = 64.0;
+
+impl<S: Scalar> Bundle<S> {
+    /// The cones of `scene`'s primitives, seen from `point`.
+    pub(crate) fn new(scene: &Scene, point: DVec3) -> Self {
+        let cone = |center: DVec3, radius: f64| Cone::new(point, center, radius);
+        Self {
+            spheres: scene.spheres.iter().map(|s| cone(s.center, s.radius)).collect(),
+            triangles: (scene.triangles.iter())
+                .map(|triangle| {
+                    let [a, b, c] = triangle.vertices;
+                    let middle = (a.min(b).min(c) + a.max(b).max(c)) / 2.0;
+                    cone(middle, [a, b, c].map(|v| v.distance(middle)).into_iter().fold(0.0, f64::max))
+                })
+                .collect(),
+            cylinders: (scene.cylinders.iter())
+                .map(|c| cone((c.bottom + c.top) / 2.0, c.radius.hypot((c.top.y - c.bottom.y) / 2.0)))
+                .collect(),
+        }
+    }
+}
+
+impl<S: Scalar> Cone<S> {
+    fn new(point: DVec3, center: DVec3, radius: f64) -> Self {
+        let unit = MARGIN * S::ROUNDOFF;
+        let toward = center - point;
+        let distance = toward.length();
+        let reach = center.abs().max_element() + point.abs().max_element() + radius;
+        let sine = (radius + unit * reach) / distance;
+        // Too near, or numbers that are none: every direction.
+        if !(sine < 0.99 && distance.is_normal()) {
+            let everything = S::from_f64(-4.0);
+            return Self { axis: Vector::zero(), cosine: everything, widening: S::literal(0.0) };
+        }
+        Self {
+            axis: Vector::rounded(toward / distance),
+            cosine: S::from_f64((1.0 - sine * sine).sqrt() - unit),
+            widening: S::from_f64(2.0 * unit / distance),
+        }
+    }
+
+    /// The rays that may meet the primitive: of unit `direction` away from the point, and `length` long.
+    #[inline(always)]
+    pub(crate) fn may_meet<L: Lane<Scalar = S>>(&self, direction: Vector<L>, length: L) -> L::Mask {
+        let cosine = Vector::splat(self.axis).dot(direction) + L::splat(self.widening) * length;
+        // The other way around a NaN would be met by nothing.
+        L::splat(self.cosine).le(cosine)
+    }
+}

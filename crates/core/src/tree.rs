@@ -1,0 +1,234 @@
+//! A tree of boxes around the bounded primitives: a ray meets few of many.
+//!
+//! Whether a box is entered never changes what is found. A hit may lie a few roundings of the coordinates off the
+//! primitive (see the error bounds beside the shapes), and where a ray grazes a triangle its `t` is noise anywhere
+//! along it. So a box is skipped for two reasons only: the ray's whole line misses the box made larger by more than
+//! those roundings, or, along the axis in which the ray is longest, the box lies behind the ray or beyond what was
+//! found before; in this axis the `t` of every primitive is within its box.
+
+use crate::lane::{Lane, Mask, Scalar};
+use crate::primitives::Leaf;
+use crate::ray::Ray;
+use crate::vector::Vector;
+use obvhs::BvhBuildParams;
+use obvhs::aabb::Aabb;
+use obvhs::bvh2::{Bvh2, builder::build_bvh2};
+use std::time::Duration;
+
+/// The box around a primitive.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bounds<S> {
+    pub(crate) low: Vector<S>,
+    pub(crate) high: Vector<S>,
+}
+
+#[derive(Debug)]
+pub(crate) struct Tree<S> {
+    /// The root first.
+    nodes: Vec<Node<S>>,
+    leaves: Vec<Leaf>,
+    /// The largest magnitude of any coordinate.
+    reach: S,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Node<S> {
+    bounds: Bounds<S>,
+    /// The number of its leaf; or of the first of its two children, which lie next to each other.
+    first: u32,
+    content: Content,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Content {
+    Leaf,
+    /// Two children, the first of which is lower along this axis.
+    Children { axis: u8 },
+}
+
+/// The deepest tree that is used. Trees have some two levels more than the logarithm of their size.
+const MAX_DEPTH: usize = 128;
+
+/// Coordinates up to here: the builder multiplies three of them, in `f32`.
+const LARGEST: f64 = 1e12;
+
+/// Roundings of the largest coordinates by which boxes are made larger. The shapes need 31 at the most: of a sphere,
+/// 12 in each of the coordinates and the radius, over three axes.
+const MARGIN: f64 = 64.0;
+
+impl<S: Scalar> Bounds<S> {
+    fn join(self, other: Self) -> Self {
+        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
+    }
+
+    fn reach(&self) -> S {
+        let Vector { x, y, z } = self.low.abs().max(self.high.abs());
+        x.max(y).max(z)
+    }
+}
+
+impl<S: Scalar> Tree<S> {
+    /// Over primitives in these boxes; `leaf` takes the numbers of those that are tried together. None if there is no
+    /// primitive, or the tree would be too deep.
+    pub(crate) fn new(bounds: &[Bounds<S>], mut leaf: impl FnMut(&[u32]) -> Leaf) -> Option<Self> {
+        let whole = bounds.iter().copied().reduce(Bounds::join)?;
+        if !whole.reach().lt(S::literal(LARGEST)) {
+            return None;
+        }
+        let boxes: Vec<Aabb> = bounds.iter().map(rounded).collect();
+        let bvh = build_bvh2(&boxes, BvhBuildParams::medium_build(), &mut Duration::default());
+        if depth(&bvh) > MAX_DEPTH {
+            return None;
+        }
+        let mut tree =
+            Self { nodes: Vec::with_capacity(bvh.nodes.len()), leaves: Vec::new(), reach: whole.reach() };
+        tree.nodes.push(Node { bounds: whole, first: 0, content: Content::Leaf });
+        // Each pair of children lies next to each other, its parent before it.
+        let mut pending = vec![(0, 0)];
+        while let Some((source, target)) = pending.pop() {
+            let node = &bvh.nodes[source];
+            let (first, content) = if node.is_leaf() {
+                let members = node.first_index as usize..(node.first_index + node.prim_count) as usize;
+                let members = &bvh.primitive_indices[members];
+                let boxes = members.iter().map(|&member| bounds[member as usize]);
+                if let Some(joined) = boxes.reduce(Bounds::join) {
+                    tree.nodes[target].bounds = joined;
+                }
+                tree.leaves.push(leaf(members));
+                (tree.leaves.len() - 1, Content::Leaf)
+            } else {
+                let (left, right) = (node.first_index as usize, node.first_index as usize + 1);
+                let apart = bvh.nodes[right].aabb.center() - bvh.nodes[left].aabb.center();
+                let axis = apart.abs().max_position();
+                let lower_first = if apart[axis] >= 0.0 { [left, right] } else { [right, left] };
+                let first = tree.nodes.len();
+                for (i, child) in lower_first.into_iter().enumerate() {
+                    tree.nodes.push(tree.nodes[0]);
+                    pending.push((child, first + i));
+                }
+                (first, Content::Children { axis: axis as u8 })
+            };
+            tree.nodes[target].first = first as u32;
+            tree.nodes[target].content = content;
+        }
+        // The boxes in this precision, from the leaves up.
+        for i in (0..tree.nodes.len()).rev() {
+            if tree.nodes[i].content != Content::Leaf {
+                let first = tree.nodes[i].first as usize;
+                tree.nodes[i].bounds = tree.nodes[first].bounds.join(tree.nodes[first + 1].bounds);
+            }
+        }
+        Some(tree)
+    }
+
+    /// Shows `found` every leaf that a ray of `wanted` may hit before `limit`, with the rays that may, from near to far
+    /// along the first of them. `found` returns the rays that still want to know, and their limits.
+    #[inline(always)]
+    pub(crate) fn visit<L: Lane<Scalar = S>>(
+        &self,
+        ray: &Ray<L>,
+        mut wanted: L::Mask,
+        mut limit: L,
+        mut found: impl FnMut(&Leaf, L::Mask) -> (L::Mask, L),
+    ) {
+        let slabs = Slabs::new(ray, self.reach);
+        let zero = S::literal(0.0);
+        let backward =
+            ray.direction.to_array().map(|d| L::first(wanted, d).is_some_and(|first| first.lt(zero)));
+        let mut stack = [0_u32; MAX_DEPTH + 1];
+        let mut height = 1;
+        while height > 0 {
+            height -= 1;
+            let node = &self.nodes[stack[height] as usize];
+            let reached = wanted & slabs.reach(&node.bounds, limit);
+            if !reached.any() {
+                continue;
+            }
+            match node.content {
+                Content::Leaf => {
+                    (wanted, limit) = found(&self.leaves[node.first as usize], reached);
+                    if !wanted.any() {
+                        return;
+                    }
+                }
+                Content::Children { axis } => {
+                    let far_first = u32::from(!backward[axis as usize]);
+                    stack[height] = node.first + far_first;
+                    stack[height + 1] = node.first + 1 - far_first;
+                    height += 2;
+                }
+            }
+        }
+    }
+}
+
+/// What all boxes ask of a ray.
+struct Slabs<L: Lane> {
+    /// The origin, moved up and down by the margin: instead of every box, once.
+    above: [L; 3],
+    below: [L; 3],
+    inverse: [L; 3],
+    /// Where the direction is longest along x and along y; else it is along z.
+    along_x: L::Mask,
+    along_y: L::Mask,
+}
+
+impl<L: Lane> Slabs<L> {
+    #[inline(always)]
+    fn new(ray: &Ray<L>, reach: L::Scalar) -> Self {
+        let origin = ray.origin.to_array();
+        let farthest = origin.map(L::abs).into_iter().reduce(L::max).unwrap_or(L::splat(reach));
+        let margin = (farthest + L::splat(reach)) * L::literal(MARGIN * L::Scalar::ROUNDOFF);
+        let inverse = ray.direction.to_array().map(|d| {
+            // A direction across the axis is turned by less than any box can tell: no infinity meets a zero.
+            let least = L::literal(1e-30);
+            L::literal(1.0) / L::select(d.abs().lt(least), least, d)
+        });
+        let Vector { x, y, z } = ray.direction.abs();
+        let along_x = y.lt(x) & z.lt(x);
+        Self {
+            above: origin.map(|o| o + margin),
+            below: origin.map(|o| o - margin),
+            inverse,
+            along_x,
+            along_y: !along_x & z.lt(y),
+        }
+    }
+
+    /// The rays that may hit something in the box before `limit`.
+    #[inline(always)]
+    fn reach(&self, bounds: &Bounds<L::Scalar>, limit: L) -> L::Mask {
+        let (low, high) = (bounds.low.to_array(), bounds.high.to_array());
+        let slab = |axis: usize| {
+            let a = (L::splat(low[axis]) - self.above[axis]) * self.inverse[axis];
+            let b = (L::splat(high[axis]) - self.below[axis]) * self.inverse[axis];
+            (a.min(b), a.max(b))
+        };
+        let [x, y, z] = [slab(0), slab(1), slab(2)];
+        let crossed = x.0.max(y.0).max(z.0).le(x.1.min(y.1).min(z.1));
+        let near = L::select(self.along_x, x.0, L::select(self.along_y, y.0, z.0));
+        let far = L::select(self.along_x, x.1, L::select(self.along_y, y.1, z.1));
+        crossed & L::literal(0.0).le(far) & near.le(limit)
+    }
+}
+
+/// The box in the builder's numbers. It only guides the tree's shape, so a rounding does not matter.
+fn rounded<S: Scalar>(bounds: &Bounds<S>) -> Aabb {
+    let corner = |v: Vector<S>| v.widened().as_vec3a();
+    Aabb::new(corner(bounds.low), corner(bounds.high))
+}
+
+/// Of the deepest leaf, where the root has 1.
+fn depth(bvh: &Bvh2) -> usize {
+    let mut deepest = 0;
+    let mut pending = vec![(0, 1)];
+    while let Some((node, depth)) = pending.pop() {
+        deepest = deepest.max(depth);
+        let node = &bvh.nodes[node];
+        if !node.is_leaf() {
+            let first = node.first_index as usize;
+            pending.extend([(first, depth + 1), (first + 1, depth + 1)]);
+        }
+    }
+    deepest
+}

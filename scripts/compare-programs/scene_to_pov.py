@@ -1,0 +1,84 @@
+#!/usr/bin/env python3
+"""Turns a scene file into a scene of POV-Ray 3.7.
+
+    scene_to_pov.py SCENE.toml [WIDTHxHEIGHT]      (to standard output)
+
+The size only matters for its proportions; the number of pixels and of samples are options of povray.
+"""
+
+import os
+import sys
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+from geometry import frame, times
+from scene_to_text import SceneError, read_scene
+
+
+def vector(values):
+    return "<" + ",".join(f"{v:.9g}" for v in values) + ">"
+
+
+def scene_to_pov(parts, width, height):
+    position, look_at, up, focal_length, screen_width = parts["camera"]
+    background, max_reflections, _ = parts["render"]
+    forward, right, up = frame(position, look_at, up)
+    # Light weights above 1/255 only, POV-Ray's default, would stop mirrored rays early.
+    yield f"""#version 3.7;
+global_settings {{ assumed_gamma 1.0 ambient_light rgb 1 max_trace_level {max_reflections + 1} adc_bailout 0 }}
+background {{ rgb {vector(background)} }}
+camera {{
+  perspective location {vector(position)} direction {vector(times(focal_length, forward))}
+  right {vector(times(screen_width, right))} up {vector(times(screen_width * height / width, up))}
+}}
+"""
+    for at, color, power in parts["lights"]:
+        yield f"light_source {{ {vector(at)} color rgb {vector(times(power, color))} }}\n"
+    for i, (color, ambient, diffuse, specular, shininess, k) in enumerate(parts["materials"]):
+        # POV-Ray adds the mirrored colour, the image model blends it in.
+        reflection = f" reflection {{ {k:.9g} }}" if k > 0 else ""
+        yield (f"#declare M{i} = texture {{ pigment {{ rgb {vector(color)} }} finish {{ "
+               f"ambient {(1 - k) * ambient:.9g} diffuse {(1 - k) * diffuse:.9g} "
+               f"phong {(1 - k) * specular:.9g} phong_size {shininess}{reflection} }} }}\n")
+    for point, normal, m in parts["planes"]:
+        # Moved there: POV-Ray wants the distance from the origin.
+        yield f"plane {{ {vector(normal)}, 0 texture {{ M{m} }} translate {vector(point)} }}\n"
+    for center, radius, m in parts["spheres"]:
+        yield f"sphere {{ {vector(center)}, {radius:.9g} texture {{ M{m} }} }}\n"
+    for bottom, top, radius, m in parts["cylinders"]:
+        yield f"cylinder {{ {vector(bottom)}, {vector(top)}, {radius:.9g} open texture {{ M{m} }} }}\n"
+    # Many triangles as a mesh of each material, which POV-Ray stores and traverses best.
+    by_material = {}
+    for corners, m in parts["triangles"]:
+        by_material.setdefault(m, []).append(corners)
+    for m, triangles in by_material.items():
+        if len(triangles) < 10:
+            for a, b, c in triangles:
+                yield f"triangle {{ {vector(a)}, {vector(b)}, {vector(c)} texture {{ M{m} }} }}\n"
+            continue
+        index = {}
+        faces = [[index.setdefault(tuple(p), len(index)) for p in corners] for corners in triangles]
+        yield f"mesh2 {{ vertex_vectors {{ {len(index)}"
+        for p in index:
+            yield ",\n" + vector(p)
+        yield f" }} face_indices {{ {len(faces)}"
+        for face in faces:
+            yield ",\n" + vector(face)
+        yield f" }} texture {{ M{m} }} }}\n"
+
+
+def main(arguments):
+    if not 1 <= len(arguments) <= 2 or arguments[0].startswith("-"):
+        print(__doc__, file=sys.stderr)
+        return 2
+    try:
+        parts = read_scene(arguments[0])
+        width, height = map(int, arguments[1].split("x")) if arguments[1:] else parts["image"]
+        sys.stdout.writelines(scene_to_pov(parts, width, height))
+    except (OSError, SceneError, ValueError) as error:
+        print(f"scene_to_pov.py: {arguments[0]}: {error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
