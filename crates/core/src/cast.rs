@@ -5,6 +5,7 @@ use crate::lane::Scalar;
 use crate::ray::Ray;
 use crate::scene::{Scene, SceneError, near_one};
 use crate::trace::World;
+use crate::tracer::Search;
 use crate::vector::Vector;
 use glam::DVec3;
 
@@ -57,7 +58,7 @@ impl Compiled for &Scene {
     type Output = Box<dyn Cast + Send + Sync>;
 
     fn compiled<S: Scalar, F: Family>(self) -> Self::Output {
-        Box::new(World::<S, F>::new(self, None))
+        Box::new(World::<S, F>::new(self, None, Search::Auto))
     }
 }
 
@@ -88,6 +89,6 @@ impl<S: Scalar, F: Family> Cast for World<S, F> {
 
     fn color(&self, origin: DVec3, direction: DVec3) -> [f64; 3] {
         let direction = Vector::<S>::rounded(direction).unit();
-        self.trace(Ray { origin: Vector::rounded(origin), direction }, true, None).widened().to_array()
+        self.trace(Ray { origin: Vector::rounded(origin), direction }, true, false).widened().to_array()
     }
 }

@@ -5,6 +5,7 @@ use crate::formulas::Robust;
 use crate::lane::{Lane, Mask};
 use crate::scene::{self, RenderSettings, Scene};
 use crate::trace::World;
+use crate::tracer::Search;
 use glam::DVec3;
 use std::array::from_fn;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
@@ -200,10 +201,10 @@ fn scene() -> Scene {
 #[test]
 fn four_lanes_give_the_bits_of_one() {
     let scene = scene();
-    let world = World::<f32, Robust>::new(&scene, None);
+    let world = World::<f32, Robust>::new(&scene, None, Search::Exhaustive);
     let camera = Camera::<f32>::new(&scene.camera, 40, 1);
     let bits = |right: f32, down: f32| {
-        let color = world.trace(camera.ray(right, down), true, None);
+        let color = world.trace(camera.ray(right, down), true, false);
         [color.x, color.y, color.z].map(f32::to_bits)
     };
     // Neighbours first, then lanes that have nothing to do with each other.
@@ -213,7 +214,7 @@ fn four_lanes_give_the_bits_of_one() {
                 let places: [f32; 4] = from_fn(|i| f32::from((right + 39 + i as i16 * stride) % 79 - 39));
                 let down = f32::from(down);
                 let rays = camera.ray(Quad(places), Quad::splat(down));
-                let color = world.trace(rays, QuadMask([true, true, false, true]), None);
+                let color = world.trace(rays, QuadMask([true, true, false, true]), false);
                 for lane in [0, 1, 3] {
                     let found = [color.x, color.y, color.z].map(|channel| channel.0[lane].to_bits());
                     assert_eq!(found, bits(places[lane], down), "lane {lane} at ({}, {down})", places[lane]);

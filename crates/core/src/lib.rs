@@ -40,5 +40,5 @@ pub use image::{Area, Digest, Image, Rgb, Tile};
 pub use precision::Precision;
 pub use scene::{Sampling, Scene};
 pub use strategy::{Plan, Renderer, Strategy, StrategyError, ThreadsStart};
-pub use tracer::{Execution, Lanes, tracer};
+pub use tracer::{Execution, Lanes, Search, tracer};
 pub use work::Work;

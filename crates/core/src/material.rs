@@ -25,8 +25,8 @@ pub(crate) struct Light<S> {
     pub(crate) intensity: Vector<S>,
     /// The planes that may hide it.
     pub(crate) planes: Vec<u32>,
-    /// The shadow rays to it.
-    pub(crate) bundle: Bundle<S>,
+    /// What the shadow rays to it may meet; else anything.
+    pub(crate) bundle: Option<Bundle<S>>,
 }
 
 impl<S: Scalar> Material<S> {
@@ -43,7 +43,7 @@ impl<S: Scalar> Material<S> {
 }
 
 impl<S: Scalar> Light<S> {
-    pub(crate) fn new(light: &scene::Light, planes: Vec<u32>, bundle: Bundle<S>) -> Self {
+    pub(crate) fn new(light: &scene::Light, planes: Vec<u32>, bundle: Option<Bundle<S>>) -> Self {
         let position = Vector::rounded(light.position);
         Self {
             position,

@@ -12,6 +12,7 @@ use crate::shapes::cylinder::{self, Cylinder};
 use crate::shapes::plane::Plane;
 use crate::shapes::sphere::{self, Sphere};
 use crate::shapes::triangle::{self, Triangle};
+use crate::tracer::Search;
 use crate::tree::{Bounds, Tree};
 use crate::vector::Vector;
 use std::ops::Range;
@@ -120,7 +121,8 @@ impl<T> Kind<T> {
 }
 
 impl<S: Scalar> Primitives<S> {
-    pub(crate) fn new(scene: &Scene) -> Self {
+    /// With a tree over the bounded primitives if `search` wants one and it pays.
+    pub(crate) fn new(scene: &Scene, search: Search) -> Self {
         let materials = (scene.planes.iter().map(|p| p.material))
             .chain(scene.spheres.iter().map(|s| s.material))
             .chain(scene.triangles.iter().map(|t| t.material))
@@ -142,11 +144,17 @@ impl<S: Scalar> Primitives<S> {
             tree: None,
             materials,
         };
-        primitives.plant();
+        if search == Search::Auto {
+            primitives.plant();
+        }
         primitives
     }
 
-    /// Puts a tree over the bounded primitives, if it pays.
+    pub(crate) fn are_in_a_tree(&self) -> bool {
+        self.tree.is_some()
+    }
+
+    /// Puts a tree over the bounded primitives, if there are enough of them.
     fn plant(&mut self) {
         let Self { spheres, triangles, cylinders, .. } = self;
         let counts = [spheres.shapes.len(), triangles.shapes.len(), cylinders.shapes.len()];
@@ -303,16 +311,16 @@ impl<S: Scalar> Primitives<S> {
         if !free.any() {
             return wanted;
         }
-        match &self.tree {
-            Some(tree) if F::FAITHFUL => {
+        match (&self.tree, &light.bundle) {
+            (Some(tree), _) if F::FAITHFUL => {
                 let aim = self.aim(ray, free);
                 tree.visit(ray, free, limit, |leaf, reached| {
                     free = free & !(reached & !self.free_in::<L, F>(leaf, ray, &aim, limit, reached));
                     (free, limit)
                 });
             }
-            _ if F::FAITHFUL => {
-                self.met::<L, F>(&light.bundle, ray, (-path.to_light, path.distance), free, |_, t| {
+            (_, Some(bundle)) if F::FAITHFUL => {
+                self.met::<L, F>(bundle, ray, (-path.to_light, path.distance), free, |_, t| {
                     free = free & !t.lt(limit);
                     free
                 });

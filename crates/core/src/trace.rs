@@ -10,6 +10,7 @@ use crate::primitives::{Hit, Primitives};
 use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::shapes::SurfacePoint;
+use crate::tracer::Search;
 use crate::vector::Vector;
 use glam::DVec3;
 use std::marker::PhantomData;
@@ -20,6 +21,8 @@ pub(crate) struct World<S, F> {
     pub(crate) primitives: Primitives<S>,
     materials: Vec<Material<S>>,
     lights: Vec<Light<S>>,
+    /// What rays from the eye may meet; else anything.
+    eye: Option<Bundle<S>>,
     background: Vector<S>,
     max_reflections: u32,
     formulas: PhantomData<F>,
@@ -33,25 +36,29 @@ struct Surface<L: Lane> {
 
 impl<S: Scalar, F: Family> World<S, F> {
     /// For rays that all start at `eye`, or else anywhere.
-    pub(crate) fn new(scene: &Scene, eye: Option<DVec3>) -> Self {
-        // Formulas that let a ray slip through a plane may bring it anywhere.
-        let eye = eye.filter(|_| F::FAITHFUL);
+    pub(crate) fn new(scene: &Scene, eye: Option<DVec3>, search: Search) -> Self {
+        // What is left out rests on the formulas' error bounds.
+        let search = if F::FAITHFUL { search } else { Search::Exhaustive };
+        let primitives = Primitives::new(scene, search);
+        let cones = search == Search::Auto && !primitives.are_in_a_tree();
+        let bundle = |point: DVec3| cones.then(|| Bundle::new(scene, point));
+        let confined = eye.filter(|_| search == Search::Auto);
+        let lights = scene.lights.iter().filter_map(|light| {
+            let planes = hiding_planes(scene, light.position, confined, S::ROUNDOFF)?;
+            Some(Light::new(light, planes, bundle(light.position)))
+        });
         Self {
-            primitives: Primitives::new(scene),
+            lights: lights.collect(),
+            eye: eye.and_then(bundle),
+            primitives,
             materials: scene.materials.iter().map(Material::new).collect(),
-            lights: (scene.lights.iter())
-                .filter_map(|light| {
-                    let planes = hiding_planes(scene, light.position, eye, S::ROUNDOFF)?;
-                    Some(Light::new(light, planes, Bundle::new(scene, light.position)))
-                })
-                .collect(),
             background: Vector::rounded(scene.render.background),
             max_reflections: scene.render.max_reflections,
             formulas: PhantomData,
         }
     }
 
-    /// The colour at the end of a ray of unit direction, in the lanes of `active`.
+    /// The colour at the end of a ray of unit direction, in the lanes of `active`; whether it starts at the eye.
     ///
     /// Instead of `(1 - k) surface + k mirrored` from the last bounce back to the first, each
     /// surface is added with the share that the mirrors before it left.
@@ -60,9 +67,9 @@ impl<S: Scalar, F: Family> World<S, F> {
         &self,
         mut ray: Ray<L>,
         mut active: L::Mask,
-        eye: Option<&Bundle<S>>,
+        from_eye: bool,
     ) -> Vector<L> {
-        let mut bundle = eye;
+        let mut bundle = self.eye.as_ref().filter(|_| from_eye);
         let (zero, one) = (L::literal(0.0), L::literal(1.0));
         let mut color = Vector::zero();
         let mut share = one;

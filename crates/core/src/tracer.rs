@@ -1,7 +1,6 @@
 //! The tracer as [`Work`]: any tile of a scene's picture.
 
 use crate::antialiasing::Filter;
-use crate::bundle::Bundle;
 use crate::camera::Camera;
 use crate::formulas::{Arithmetic, Compiled, Family};
 use crate::image::Tile;
@@ -24,6 +23,20 @@ pub struct Execution {
     pub lanes: Lanes,
     /// Whether a lattice point that several pixels of a tile need is traced once.
     pub share_samples: bool,
+    /// Whether a ray tries what it cannot meet.
+    pub search: Search,
+}
+
+/// Which primitives a ray tries. With the textbook's formulas it is always each of them: what they would find there
+/// depends on where they look.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Search {
+    /// What the scene's shape does not rule out: by planes that no ray crosses, by cones of directions around the
+    /// eye and the lights, or, among many primitives, by a tree of boxes.
+    #[default]
+    Auto,
+    /// Each: the definition, to hold the other against.
+    Exhaustive,
 }
 
 /// How many rays are followed side by side, as a packet.
@@ -57,7 +70,12 @@ impl Lanes {
 /// The fastest execution in this arithmetic: packets, and samples shared.
 impl<A: Into<Arithmetic>> From<A> for Execution {
     fn from(arithmetic: A) -> Self {
-        Self { arithmetic: arithmetic.into(), lanes: Lanes::default(), share_samples: true }
+        Self {
+            arithmetic: arithmetic.into(),
+            lanes: Lanes::default(),
+            share_samples: true,
+            search: Search::default(),
+        }
     }
 }
 
@@ -73,8 +91,8 @@ pub fn tracer(
     execution: impl Into<Execution>,
 ) -> Result<Box<dyn Work + Send>, SceneError> {
     scene.check()?;
-    let Execution { arithmetic, lanes, share_samples } = execution.into();
-    Ok(arithmetic.select(Picture { scene, width, height, lanes, share_samples }))
+    let execution = execution.into();
+    Ok(execution.arithmetic.select(Picture { scene, width, height, execution }))
 }
 
 /// What a tracer is compiled for.
@@ -82,15 +100,14 @@ struct Picture<'a> {
     scene: &'a Scene,
     width: u32,
     height: u32,
-    lanes: Lanes,
-    share_samples: bool,
+    execution: Execution,
 }
 
 impl Compiled for Picture<'_> {
     type Output = Box<dyn Work + Send>;
 
     fn compiled<S: Scalar, F: Family>(self) -> Self::Output {
-        match self.lanes {
+        match self.execution.lanes {
             Lanes::One => Box::new(Tracer::<S, F>::new(&self)),
             Lanes::Wide256 => Box::new(Tracer::<S::Wide256, F>::new(&self)),
             Lanes::Wide512 => Box::new(Tracer::<S::Wide512, F>::new(&self)),
@@ -102,8 +119,6 @@ impl Compiled for Picture<'_> {
 struct Tracer<L: Lane, F> {
     world: World<L::Scalar, F>,
     camera: Camera<L::Scalar>,
-    /// Of the primary rays.
-    eye: Bundle<L::Scalar>,
     filter: Filter<L::Scalar>,
     width: u32,
     height: u32,
@@ -113,16 +128,15 @@ struct Tracer<L: Lane, F> {
 
 impl<L: Lane, F: Family> Tracer<L, F> {
     fn new(picture: &Picture) -> Self {
-        let &Picture { scene, width, height, share_samples, .. } = picture;
+        let &Picture { scene, width, height, execution } = picture;
         let filter = Filter::new(&scene.render);
         Self {
-            world: World::new(scene, Some(scene.camera.position)),
-            eye: Bundle::new(scene, scene.camera.position),
+            world: World::new(scene, Some(scene.camera.position), execution.search),
             camera: Camera::new(&scene.camera, width, filter.density()),
             filter,
             width,
             height,
-            share_samples,
+            share_samples: execution.share_samples,
             lanes: PhantomData,
         }
     }
@@ -138,7 +152,7 @@ impl<L: Lane, F: Family> Tracer<L, F> {
         for first in (0..places.len()).step_by(L::LANES) {
             let (aside, below) = places.load::<L>(first);
             let ray = self.camera.ray(L::splat(right) + aside, L::splat(down) + below);
-            colors.store(first, self.world.trace(ray, L::first_lanes(places.len() - first), Some(&self.eye)));
+            colors.store(first, self.world.trace(ray, L::first_lanes(places.len() - first), true));
         }
     }
 

@@ -43,7 +43,9 @@ struct Node<S> {
 enum Content {
     Leaf,
     /// Two children, the first of which is lower along this axis.
-    Children { axis: u8 },
+    Children {
+        axis: u8,
+    },
 }
 
 /// The deepest tree that is used. Trees have some two levels more than the logarithm of their size.

@@ -46,7 +46,8 @@ impl Input {
         };
         let arithmetic = Arithmetic { formulas: options.formulas.into(), precision };
         let share_samples = options.share_samples == SwitchOption::On;
-        let execution = Execution { arithmetic, lanes: options.lanes.into(), share_samples };
+        let (lanes, search) = (options.lanes.into(), options.search.into());
+        let execution = Execution { arithmetic, lanes, share_samples, search };
         Ok(Self { name, scene, width, height, execution, reason })
     }
 

@@ -2,7 +2,7 @@
 
 use clap::{Args, ValueEnum};
 use rayweave_core::scene::MAX_ANTIALIASING;
-use rayweave_core::{Formulas, Lanes, Sampling, Strategy};
+use rayweave_core::{Formulas, Lanes, Sampling, Search, Strategy};
 use rayweave_registry::STRATEGIES;
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::thread::available_parallelism;
@@ -38,6 +38,9 @@ pub struct SceneOptions {
     /// Whether lattice points that neighbouring pixels of a tile need are traced once
     #[arg(long, value_enum, default_value_t)]
     pub share_samples: SwitchOption,
+    /// Which primitives a ray tries
+    #[arg(long, value_enum, default_value_t)]
+    pub search: SearchOption,
 }
 
 /// Where the samples of a pixel lie.
@@ -99,6 +102,16 @@ pub enum SwitchOption {
     Off,
 }
 
+/// Which primitives a ray tries.
+#[derive(Clone, Copy, Default, ValueEnum)]
+pub enum SearchOption {
+    /// Those that the scene's shape does not rule out
+    #[default]
+    Auto,
+    /// Each: for comparison
+    Exhaustive,
+}
+
 /// The size of the tiles.
 #[derive(Args)]
 pub struct TileOption {
@@ -123,6 +136,15 @@ impl From<LanesOption> for Lanes {
             LanesOption::One => Self::One,
             LanesOption::Wide256 => Self::Wide256,
             LanesOption::Wide512 => Self::Wide512,
+        }
+    }
+}
+
+impl From<SearchOption> for Search {
+    fn from(option: SearchOption) -> Self {
+        match option {
+            SearchOption::Auto => Self::Auto,
+            SearchOption::Exhaustive => Self::Exhaustive,
         }
     }
 }

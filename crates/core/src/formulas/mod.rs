@@ -94,8 +94,18 @@ pub(crate) trait Family: Debug + Send + Sync + 'static {
 
     fn plane<L: Lane>(plane: &Plane<L::Scalar>, ray: &Ray<L>) -> L;
     fn sphere<L: Lane>(sphere: &Sphere<L::Scalar>, ray: &Ray<L>, aim: &sphere::Aim<L>, wanted: L::Mask) -> L;
-    fn triangle<L: Lane>(triangle: &Triangle<L::Scalar>, ray: &Ray<L>, aim: &triangle::Aim<L>, wanted: L::Mask) -> L;
-    fn cylinder<L: Lane>(cylinder: &Cylinder<L::Scalar>, ray: &Ray<L>, aim: &cylinder::Aim<L>, wanted: L::Mask) -> L;
+    fn triangle<L: Lane>(
+        triangle: &Triangle<L::Scalar>,
+        ray: &Ray<L>,
+        aim: &triangle::Aim<L>,
+        wanted: L::Mask,
+    ) -> L;
+    fn cylinder<L: Lane>(
+        cylinder: &Cylinder<L::Scalar>,
+        ray: &Ray<L>,
+        aim: &cylinder::Aim<L>,
+        wanted: L::Mask,
+    ) -> L;
 
     /// What becomes of the hit `near` a surface, given the surface's own point next to it.
     fn settle<L: Lane>(near: Vector<L>, on_surface: SurfacePoint<L>) -> SurfacePoint<L>;

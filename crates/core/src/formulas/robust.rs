@@ -28,12 +28,22 @@ impl Family for Robust {
     }
 
     #[inline(always)]
-    fn triangle<L: Lane>(triangle: &Triangle<L::Scalar>, ray: &Ray<L>, aim: &triangle::Aim<L>, wanted: L::Mask) -> L {
+    fn triangle<L: Lane>(
+        triangle: &Triangle<L::Scalar>,
+        ray: &Ray<L>,
+        aim: &triangle::Aim<L>,
+        wanted: L::Mask,
+    ) -> L {
         triangle.intersect(ray, aim, wanted)
     }
 
     #[inline(always)]
-    fn cylinder<L: Lane>(cylinder: &Cylinder<L::Scalar>, ray: &Ray<L>, aim: &cylinder::Aim<L>, wanted: L::Mask) -> L {
+    fn cylinder<L: Lane>(
+        cylinder: &Cylinder<L::Scalar>,
+        ray: &Ray<L>,
+        aim: &cylinder::Aim<L>,
+        wanted: L::Mask,
+    ) -> L {
         cylinder.intersect(ray, aim, wanted)
     }
 

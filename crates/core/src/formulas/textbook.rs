@@ -28,7 +28,12 @@ impl Family for Textbook {
     }
 
     #[inline(always)]
-    fn sphere<L: Lane>(sphere: &Sphere<L::Scalar>, ray: &Ray<L>, _aim: &sphere::Aim<L>, wanted: L::Mask) -> L {
+    fn sphere<L: Lane>(
+        sphere: &Sphere<L::Scalar>,
+        ray: &Ray<L>,
+        _aim: &sphere::Aim<L>,
+        wanted: L::Mask,
+    ) -> L {
         let from_center = ray.origin - Vector::splat(sphere.center);
         let a = ray.direction.dot(ray.direction);
         let b = L::literal(2.0) * from_center.dot(ray.direction);
@@ -40,7 +45,12 @@ impl Family for Textbook {
     /// by some `4u` of its coordinates and `t |d|`, differently for each triangle: an edge that two share
     /// may belong to neither.
     #[inline(always)]
-    fn triangle<L: Lane>(triangle: &Triangle<L::Scalar>, ray: &Ray<L>, _aim: &triangle::Aim<L>, wanted: L::Mask) -> L {
+    fn triangle<L: Lane>(
+        triangle: &Triangle<L::Scalar>,
+        ray: &Ray<L>,
+        _aim: &triangle::Aim<L>,
+        wanted: L::Mask,
+    ) -> L {
         let [a, b, c] = triangle.vertices.map(Vector::splat);
         let normal = Vector::splat(triangle.normal);
         let t = plane_root(a, normal, ray);
@@ -49,14 +59,18 @@ impl Family for Textbook {
             return miss();
         }
         let point = ray.at(t);
-        let within = |from: Vector<L>, to: Vector<L>| {
-            L::literal(0.0).le(normal.dot((to - from).cross(point - from)))
-        };
+        let within =
+            |from: Vector<L>, to: Vector<L>| L::literal(0.0).le(normal.dot((to - from).cross(point - from)));
         L::select(in_front & within(a, b) & within(b, c) & within(c, a), t, miss())
     }
 
     #[inline(always)]
-    fn cylinder<L: Lane>(cylinder: &Cylinder<L::Scalar>, ray: &Ray<L>, _aim: &cylinder::Aim<L>, wanted: L::Mask) -> L {
+    fn cylinder<L: Lane>(
+        cylinder: &Cylinder<L::Scalar>,
+        ray: &Ray<L>,
+        _aim: &cylinder::Aim<L>,
+        wanted: L::Mask,
+    ) -> L {
         let (bottom, top) = (Vector::splat(cylinder.bottom), L::splat(cylinder.top));
         let (x, z) = (ray.origin.x - bottom.x, ray.origin.z - bottom.z);
         let Vector { x: dx, y: dy, z: dz } = ray.direction;

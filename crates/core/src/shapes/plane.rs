@@ -22,9 +22,8 @@ impl<S: Scalar> Plane<S> {
     pub(crate) fn new(plane: &scene::Plane) -> Self {
         let normal = Vector::<S>::rounded(scene::near_one(plane.normal));
         let zero = S::literal(0.0);
-        let others_are_zero = |axis: &usize| {
-            normal.to_array().iter().enumerate().all(|(i, n)| i == *axis || n.equals(zero))
-        };
+        let others_are_zero =
+            |axis: &usize| normal.to_array().iter().enumerate().all(|(i, n)| i == *axis || n.equals(zero));
         Self {
             point: Vector::rounded(plane.point),
             normal,
