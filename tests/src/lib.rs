@@ -1,5 +1,7 @@
 //! What no single crate can test, and what such tests are made of.
 
+/// Scenes of many primitives.
+pub mod crowd;
 /// The places where the report that this project starts from is wrong, each with a witness.
 pub mod errata;
 /// Closed meshes.

@@ -1,6 +1,50 @@
 //! Pictures without any strategy: whatever is true of them is true of the work alone.
 
-use rayweave_core::{Image, Precision, Scene, Tile, Work, tracer};
+use rayweave_core::{
+    Arithmetic, Execution, Image, Lanes, Precision, Rgb, Scene, Search, Tile, Work, tracer,
+};
+use std::num::NonZeroU32;
+
+/// The execution that has nothing of the others': each ray for itself, and against each primitive.
+#[must_use]
+pub fn plain(arithmetic: impl Into<Arithmetic>) -> Execution {
+    let (lanes, search) = (Lanes::One, Search::Exhaustive);
+    Execution { arithmetic: arithmetic.into(), lanes, share_samples: false, search }
+}
+
+/// Every execution in one arithmetic; the first is the plain one.
+#[must_use]
+pub fn executions(arithmetic: impl Into<Arithmetic>) -> Vec<Execution> {
+    let plain = plain(arithmetic);
+    let searches = [plain, Execution { search: Search::Auto, ..plain }];
+    let shared = searches.into_iter().flat_map(|e| [false, true].map(|s| Execution { share_samples: s, ..e }));
+    shared.flat_map(|e| Lanes::ALL.map(|lanes| Execution { lanes, ..e })).collect()
+}
+
+/// The picture in tiles of this side, the last one first; what no tile writes stays NaN.
+///
+/// # Panics
+///
+/// If the scene is not sound, the side is 0, or a picture of that size cannot be.
+#[must_use]
+pub fn in_tiles(scene: &Scene, (width, height): (u32, u32), execution: Execution, side: u32) -> Image {
+    let work = tracer(scene, width, height, execution).expect("a sound scene");
+    let mut picture = Image::filled(width, height, [f32::NAN; 3]).expect("a picture of this size");
+    let tiles = picture.tiles(NonZeroU32::new(side).expect("not 0"));
+    tiles.into_iter().rev().for_each(|mut tile| work.render(&mut tile));
+    picture
+}
+
+/// Which pixels have other bits, if any: how many, and the first of them.
+#[must_use]
+pub fn difference(found: &Image, right: &Image) -> Option<String> {
+    let bits = |color: &Rgb| color.map(f32::to_bits);
+    let pairs = found.pixels().iter().zip(right.pixels()).enumerate();
+    let different: Vec<_> = pairs.filter(|(_, (found, right))| bits(found) != bits(right)).collect();
+    let (index, (found, expected)) = different.first()?;
+    let (count, position) = (different.len(), right.position(*index));
+    Some(format!("{count} pixels differ, the first at {position:?}: {found:?}, not {expected:?}"))
+}
 
 /// Computed one pixel at a time, the last one first: in an order that no strategy has.
 ///

@@ -17,7 +17,7 @@ use std::ops::RangeInclusive;
 /// material: the first one is seen.
 #[must_use]
 pub fn random_scene(seed: u64) -> Scene {
-    let mut draw = Draw { random: SplitMix64::new(seed) };
+    let mut draw = Draw::new(seed);
     let materials = draw.several(1..=6, Draw::material);
     let count = materials.len();
     let mut scene = Scene {
@@ -69,44 +69,48 @@ pub fn random_scene(seed: u64) -> Scene {
 }
 
 /// What to make of random numbers.
-struct Draw {
+pub(crate) struct Draw {
     random: SplitMix64,
 }
 
 impl Draw {
+    pub(crate) fn new(seed: u64) -> Self {
+        Self { random: SplitMix64::new(seed) }
+    }
+
     fn bits(&mut self) -> u64 {
         self.random.next_u64()
     }
 
     /// In 0..1.
-    fn unit(&mut self) -> f64 {
+    pub(crate) fn unit(&mut self) -> f64 {
         self.random.fraction()
     }
 
-    fn between(&mut self, low: f64, high: f64) -> f64 {
+    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }
 
     /// Between two sizes above 0, each order of magnitude as likely as the next.
-    fn magnitude(&mut self, low: f64, high: f64) -> f64 {
+    pub(crate) fn magnitude(&mut self, low: f64, high: f64) -> f64 {
         libm::exp(self.between(libm::log(low), libm::log(high)))
     }
 
-    fn integer(&mut self, range: RangeInclusive<u32>) -> u32 {
+    pub(crate) fn integer(&mut self, range: RangeInclusive<u32>) -> u32 {
         range.start() + (self.bits() % u64::from(range.end() - range.start() + 1)) as u32
     }
 
-    fn chance(&mut self, share: f64) -> bool {
+    pub(crate) fn chance(&mut self, share: f64) -> bool {
         self.unit() < share
     }
 
     /// In a cube around the origin.
-    fn within(&mut self, half_side: f64) -> DVec3 {
+    pub(crate) fn within(&mut self, half_side: f64) -> DVec3 {
         DVec3::from_array([(); 3].map(|()| self.between(-half_side, half_side)))
     }
 
     /// Any direction, each as likely.
-    fn direction(&mut self) -> DVec3 {
+    pub(crate) fn direction(&mut self) -> DVec3 {
         loop {
             let v = self.within(1.0);
             if (0.1..=1.0).contains(&v.length()) {
@@ -115,11 +119,11 @@ impl Draw {
         }
     }
 
-    fn color(&mut self) -> DVec3 {
+    pub(crate) fn color(&mut self) -> DVec3 {
         DVec3::from_array([(); 3].map(|()| self.unit()))
     }
 
-    fn index(&mut self, count: usize) -> usize {
+    pub(crate) fn index(&mut self, count: usize) -> usize {
         self.integer(0..=count as u32 - 1) as usize
     }
 

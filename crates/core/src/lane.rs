@@ -78,8 +78,8 @@ pub trait Lane:
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
     /// `yes` where the mask holds, `no` elsewhere.
     fn select_index(mask: Self::Mask, yes: Self::Index, no: Self::Index) -> Self::Index;
-    /// The number in the first lane where the mask holds.
-    fn first(mask: Self::Mask, numbers: Self) -> Option<Self::Scalar>;
+    /// The three numbers in the first lane where the mask holds.
+    fn first(mask: Self::Mask, numbers: [Self; 3]) -> Option<[Self::Scalar; 3]>;
     /// The index in the first lane where the mask holds.
     fn first_index(mask: Self::Mask, indices: Self::Index) -> Option<u32>;
     /// The lanes that hold `index`.
@@ -189,8 +189,8 @@ macro_rules! scalar {
                 if mask { yes } else { no }
             }
             #[inline(always)]
-            fn first(mask: bool, number: Self) -> Option<Self> {
-                mask.then_some(number)
+            fn first(mask: bool, numbers: [Self; 3]) -> Option<[Self; 3]> {
+                mask.then_some(numbers)
             }
             #[inline(always)]
             fn first_index(mask: bool, index: u32) -> Option<u32> {

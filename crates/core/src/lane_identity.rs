@@ -128,8 +128,8 @@ impl Lane for Quad {
     fn select_index(mask: QuadMask, yes: [u32; 4], no: [u32; 4]) -> [u32; 4] {
         from_fn(|i| if mask.0[i] { yes[i] } else { no[i] })
     }
-    fn first(mask: QuadMask, numbers: Self) -> Option<f32> {
-        mask.0.iter().position(|&lane| lane).map(|i| numbers.0[i])
+    fn first(mask: QuadMask, numbers: [Self; 3]) -> Option<[f32; 3]> {
+        mask.0.iter().position(|&lane| lane).map(|i| numbers.map(|number| number.0[i]))
     }
     fn first_index(mask: QuadMask, indices: [u32; 4]) -> Option<u32> {
         mask.0.iter().position(|&lane| lane).map(|i| indices[i])

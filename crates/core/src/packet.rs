@@ -95,9 +95,10 @@ macro_rules! packet {
                 mask.to_bits().select(yes, no)
             }
             #[inline(always)]
-            fn first(mask: Self, numbers: Self) -> Option<$scalar> {
+            fn first(mask: Self, numbers: [Self; 3]) -> Option<[$scalar; 3]> {
                 let lanes = mask.to_bitmask();
-                (lanes != 0).then(|| numbers.to_array()[lanes.trailing_zeros() as usize])
+                let lane = lanes.trailing_zeros() as usize % $lanes;
+                (lanes != 0).then(|| numbers.map(|number| number.to_array()[lane]))
             }
             #[inline(always)]
             fn first_index(mask: Self, indices: $index) -> Option<u32> {

@@ -5,7 +5,7 @@ use crate::bundle::Bundle;
 use crate::formulas::{Aim, Family, LightPath};
 use crate::lane::{Lane, Mask, Scalar};
 use crate::material::Light;
-use crate::ray::{Ray, miss};
+use crate::ray::{Heading, Ray, miss};
 use crate::scene::Scene;
 use crate::shapes::SurfacePoint;
 use crate::shapes::cylinder::{self, Cylinder};
@@ -48,7 +48,7 @@ struct Kind<T> {
 }
 
 /// A few primitives that are tried together: ranges of places.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Leaf {
     spheres: Range<u32>,
     triangles: Range<u32>,
@@ -188,15 +188,15 @@ impl<S: Scalar> Primitives<S> {
         }
     }
 
-    /// What the rays of `wanted` share with the shapes of each kind that is there.
+    /// What the shapes of each kind that is there ask of a ray, triangles of one with this heading.
     #[inline(always)]
-    fn aim<L: Lane<Scalar = S>>(&self, ray: &Ray<L>, wanted: L::Mask) -> Aim<L> {
+    fn aim<L: Lane<Scalar = S>>(&self, ray: &Ray<L>, heading: Heading) -> Aim<L> {
         Aim {
             sphere: if self.spheres.shapes.is_empty() { sphere::Aim::none() } else { sphere::Aim::new(ray) },
             triangle: if self.triangles.shapes.is_empty() {
                 triangle::Aim::none()
             } else {
-                triangle::Aim::new(ray, wanted)
+                triangle::Aim::new(ray, heading)
             },
             cylinder: if self.cylinders.shapes.is_empty() {
                 cylinder::Aim::none()
@@ -220,22 +220,53 @@ impl<S: Scalar> Primitives<S> {
             nearest.offer::<true>(number, F::plane(plane, ray));
         }
         match (&self.tree, eye) {
-            (Some(tree), _) if F::FAITHFUL => {
-                let aim = self.aim(ray, wanted);
-                tree.visit(ray, wanted, nearest.t, |leaf, reached| {
+            (Some(tree), _) if F::FAITHFUL => ray.by_heading(wanted, |heading, wanted| {
+                let aim = self.aim(ray, heading);
+                tree.visit(ray, heading, wanted, nearest.t, |leaf, reached| {
                     self.nearest_in::<L, F>(leaf, ray, &aim, reached, &mut nearest);
                     (wanted, nearest.t)
                 });
-            }
+            }),
             (_, Some(eye)) if F::FAITHFUL => {
                 self.met::<L, F>(eye, ray, (ray.direction, L::literal(0.0)), wanted, |number, t| {
                     nearest.offer::<true>(number, t);
                     wanted
                 });
             }
-            _ => self.nearest_in::<L, F>(&self.bounded, ray, &self.aim(ray, wanted), wanted, &mut nearest),
+            _ => self.by_heading::<L, F>(ray, wanted, |leaf, aim, wanted| {
+                self.nearest_in::<L, F>(leaf, ray, aim, wanted, &mut nearest);
+            }),
         }
         nearest
+    }
+
+    /// Shows `leaf` all bounded primitives: triangles for each heading of the rays, if the formulas ask for it.
+    #[inline(always)]
+    fn by_heading<L: Lane<Scalar = S>, F: Family>(
+        &self,
+        ray: &Ray<L>,
+        wanted: L::Mask,
+        mut leaf: impl FnMut(&Leaf, &Aim<L>, L::Mask),
+    ) {
+        let all = &self.bounded;
+        if !F::FAITHFUL || self.triangles.shapes.is_empty() {
+            return leaf(all, &self.aim(ray, Heading::default()), wanted);
+        }
+        let (others, triangles) = (
+            Leaf { triangles: 0..0, ..all.clone() },
+            Leaf { triangles: all.triangles.clone(), ..Leaf::default() },
+        );
+        if others != Leaf::default() {
+            leaf(&others, &self.aim(ray, Heading::default()), wanted);
+        }
+        ray.by_heading(wanted, |heading, wanted| {
+            let aim = Aim {
+                sphere: sphere::Aim::none(),
+                triangle: triangle::Aim::new(ray, heading),
+                cylinder: cylinder::Aim::none(),
+            };
+            leaf(&triangles, &aim, wanted);
+        });
     }
 
     /// Shows `found` the number and the `t` of every bounded primitive, in order, whose cone some ray of `wanted` is
@@ -260,8 +291,11 @@ impl<S: Scalar> Primitives<S> {
         for (i, cone) in bundle.triangles.iter().enumerate() {
             let met = wanted & cone.may_meet(direction, length);
             if met.any() {
-                let t = F::triangle(&self.triangles.shapes[i], ray, &triangle::Aim::new(ray, met), met);
-                wanted = found(self.triangles.first + i as u32, t);
+                ray.by_heading(met, |heading, met| {
+                    let t =
+                        F::triangle(&self.triangles.shapes[i], ray, &triangle::Aim::new(ray, heading), met);
+                    wanted = found(self.triangles.first + i as u32, t);
+                });
             }
         }
         for (i, cone) in bundle.cylinders.iter().enumerate() {
@@ -312,20 +346,23 @@ impl<S: Scalar> Primitives<S> {
             return wanted;
         }
         match (&self.tree, &light.bundle) {
-            (Some(tree), _) if F::FAITHFUL => {
-                let aim = self.aim(ray, free);
-                tree.visit(ray, free, limit, |leaf, reached| {
+            (Some(tree), _) if F::FAITHFUL => ray.by_heading(free, |heading, wanted| {
+                let aim = self.aim(ray, heading);
+                tree.visit(ray, heading, wanted, limit, |leaf, reached| {
                     free = free & !(reached & !self.free_in::<L, F>(leaf, ray, &aim, limit, reached));
-                    (free, limit)
+                    (wanted & free, limit)
                 });
-            }
+            }),
             (_, Some(bundle)) if F::FAITHFUL => {
                 self.met::<L, F>(bundle, ray, (-path.to_light, path.distance), free, |_, t| {
                     free = free & !t.lt(limit);
                     free
                 });
             }
-            _ => free = self.free_in::<L, F>(&self.bounded, ray, &self.aim(ray, free), limit, free),
+            _ => self.by_heading::<L, F>(ray, free, |leaf, aim, wanted| {
+                let reached = wanted & free;
+                free = free & !(reached & !self.free_in::<L, F>(leaf, ray, aim, limit, reached));
+            }),
         }
         wanted & !free
     }

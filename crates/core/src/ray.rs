@@ -1,6 +1,6 @@
 //! A ray, and what every shape asks of it.
 
-use crate::lane::Lane;
+use crate::lane::{Lane, Scalar};
 use crate::vector::Vector;
 
 /// The half line `origin + t direction` for `t > 0`.
@@ -22,4 +22,49 @@ impl<L: Lane> Ray<L> {
 #[inline(always)]
 pub(crate) fn miss<L: Lane>() -> L {
     L::literal(f64::INFINITY)
+}
+
+/// What similar rays have in common: along which axis they are longest, and which way they go.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Heading {
+    /// The axes, x, y and z being 0, 1 and 2: cyclic, the one along which the direction is longest last.
+    pub(crate) order: [usize; 3],
+    /// For x, y and z, whether the direction is below 0.
+    pub(crate) backward: [bool; 3],
+}
+
+impl Heading {
+    #[inline(always)]
+    fn of<S: Scalar>(direction: [S; 3]) -> Self {
+        let [x, y, z] = direction.map(S::abs);
+        let order = match (y.lt(x) & z.lt(x), z.lt(y)) {
+            (true, _) => [1, 2, 0],
+            (false, true) => [2, 0, 1],
+            (false, false) => [0, 1, 2],
+        };
+        Self { order, backward: direction.map(|d| d.lt(S::literal(0.0))) }
+    }
+}
+
+impl<L: Lane> Ray<L> {
+    /// Shows `group` the rays of `wanted` by their heading: those of a packet of neighbours mostly have one.
+    #[inline(always)]
+    pub(crate) fn by_heading(&self, wanted: L::Mask, mut group: impl FnMut(Heading, L::Mask)) {
+        let direction = self.direction.to_array();
+        let backward = direction.map(|d| d.lt(L::literal(0.0)));
+        let Vector { x, y, z } = self.direction.abs();
+        let along_x = y.lt(x) & z.lt(x);
+        let along_y = !along_x & z.lt(y);
+        let along = [along_x, along_y, !along_x & !along_y];
+        let mut todo = wanted;
+        while let Some(first) = L::first(todo, direction) {
+            let heading = Heading::of(first);
+            let mut alike = todo & along[heading.order[2]];
+            for axis in 0..3 {
+                alike = alike & if heading.backward[axis] { backward[axis] } else { !backward[axis] };
+            }
+            group(heading, alike);
+            todo = todo & !alike;
+        }
+    }
 }

@@ -8,19 +8,16 @@
 
 use crate::lane::{Lane, Mask, Scalar};
 use crate::primitives::Leaf;
-use crate::ray::Ray;
+use crate::ray::{Heading, Ray};
 use crate::vector::Vector;
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::{Bvh2, builder::build_bvh2};
 use std::time::Duration;
 
-/// The box around a primitive.
+/// The box around a primitive: the lower x, y and z, the upper ones, and two numbers that make it eight.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Bounds<S> {
-    pub(crate) low: Vector<S>,
-    pub(crate) high: Vector<S>,
-}
+pub(crate) struct Bounds<S>([S; 8]);
 
 #[derive(Debug)]
 pub(crate) struct Tree<S> {
@@ -59,12 +56,26 @@ const LARGEST: f64 = 1e12;
 const MARGIN: f64 = 64.0;
 
 impl<S: Scalar> Bounds<S> {
-    fn join(self, other: Self) -> Self {
-        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
+    pub(crate) fn new(low: Vector<S>, high: Vector<S>) -> Self {
+        let zero = S::literal(0.0);
+        Self([low.x, low.y, low.z, high.x, high.y, high.z, zero, zero])
     }
 
+    fn low(&self) -> Vector<S> {
+        Vector::new(self.0[0], self.0[1], self.0[2])
+    }
+
+    fn high(&self) -> Vector<S> {
+        Vector::new(self.0[3], self.0[4], self.0[5])
+    }
+
+    fn join(self, other: Self) -> Self {
+        Self::new(self.low().min(other.low()), self.high().max(other.high()))
+    }
+
+    /// The largest magnitude of a coordinate.
     fn reach(&self) -> S {
-        let Vector { x, y, z } = self.low.abs().max(self.high.abs());
+        let Vector { x, y, z } = self.low().abs().max(self.high().abs());
         x.max(y).max(z)
     }
 }
@@ -123,20 +134,18 @@ impl<S: Scalar> Tree<S> {
         Some(tree)
     }
 
-    /// Shows `found` every leaf that a ray of `wanted` may hit before `limit`, with the rays that may, from near to far
-    /// along the first of them. `found` returns the rays that still want to know, and their limits.
+    /// Shows `found` every leaf that a ray of `wanted`, all with this heading, may hit before `limit`, with the rays
+    /// that may, from near to far. `found` returns the rays that still want to know, and their limits.
     #[inline(always)]
     pub(crate) fn visit<L: Lane<Scalar = S>>(
         &self,
         ray: &Ray<L>,
+        heading: Heading,
         mut wanted: L::Mask,
         mut limit: L,
         mut found: impl FnMut(&Leaf, L::Mask) -> (L::Mask, L),
     ) {
-        let slabs = Slabs::new(ray, self.reach);
-        let zero = S::literal(0.0);
-        let backward =
-            ray.direction.to_array().map(|d| L::first(wanted, d).is_some_and(|first| first.lt(zero)));
+        let slabs = Slabs::new(ray, heading, self.reach);
         let mut stack = [0_u32; MAX_DEPTH + 1];
         let mut height = 1;
         while height > 0 {
@@ -154,9 +163,9 @@ impl<S: Scalar> Tree<S> {
                     }
                 }
                 Content::Children { axis } => {
-                    let far_first = u32::from(!backward[axis as usize]);
-                    stack[height] = node.first + far_first;
-                    stack[height + 1] = node.first + 1 - far_first;
+                    let far = u32::from(!heading.backward[axis as usize]);
+                    stack[height] = node.first + far;
+                    stack[height + 1] = node.first + 1 - far;
                     height += 2;
                 }
             }
@@ -164,60 +173,58 @@ impl<S: Scalar> Tree<S> {
     }
 }
 
-/// What all boxes ask of a ray.
-struct Slabs<L: Lane> {
-    /// The origin, moved up and down by the margin: instead of every box, once.
-    above: [L; 3],
-    below: [L; 3],
+/// What all boxes ask of rays with one heading. Axes are in the heading's order: the one along which the rays are
+/// longest is last.
+struct Slabs<L> {
+    /// For each axis, the place in a box of the side that the rays pass first, and of the other one.
+    sides: [[usize; 2]; 3],
+    /// The origin as seen from each of these sides, moved away by the margin: instead of every box, once.
+    origin: [[L; 2]; 3],
     inverse: [L; 3],
-    /// Where the direction is longest along x and along y; else it is along z.
-    along_x: L::Mask,
-    along_y: L::Mask,
 }
 
 impl<L: Lane> Slabs<L> {
     #[inline(always)]
-    fn new(ray: &Ray<L>, reach: L::Scalar) -> Self {
-        let origin = ray.origin.to_array();
-        let farthest = origin.map(L::abs).into_iter().reduce(L::max).unwrap_or(L::splat(reach));
+    fn new(ray: &Ray<L>, heading: Heading, reach: L::Scalar) -> Self {
+        let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
+        let farthest = origin[0].abs().max(origin[1].abs()).max(origin[2].abs());
         let margin = (farthest + L::splat(reach)) * L::literal(MARGIN * L::Scalar::ROUNDOFF);
-        let inverse = ray.direction.to_array().map(|d| {
-            // A direction across the axis is turned by less than any box can tell: no infinity meets a zero.
-            let least = L::literal(1e-30);
-            L::literal(1.0) / L::select(d.abs().lt(least), least, d)
-        });
-        let Vector { x, y, z } = ray.direction.abs();
-        let along_x = y.lt(x) & z.lt(x);
+        // A direction across the axis is turned by less than any box can tell: no infinity meets a zero.
+        let least = |backward: bool| L::literal(if backward { -1e-30 } else { 1e-30 });
         Self {
-            above: origin.map(|o| o + margin),
-            below: origin.map(|o| o - margin),
-            inverse,
-            along_x,
-            along_y: !along_x & z.lt(y),
+            sides: heading.order.map(|axis| {
+                let (low, high) = (axis, 3 + axis);
+                if heading.backward[axis] { [high, low] } else { [low, high] }
+            }),
+            origin: heading.order.map(|axis| {
+                let (above, below) = (origin[axis] + margin, origin[axis] - margin);
+                if heading.backward[axis] { [below, above] } else { [above, below] }
+            }),
+            inverse: heading.order.map(|axis| {
+                let (d, least) = (direction[axis], least(heading.backward[axis]));
+                L::literal(1.0) / L::select(d.abs().lt(least.abs()), least, d)
+            }),
         }
     }
 
     /// The rays that may hit something in the box before `limit`.
     #[inline(always)]
     fn reach(&self, bounds: &Bounds<L::Scalar>, limit: L) -> L::Mask {
-        let (low, high) = (bounds.low.to_array(), bounds.high.to_array());
-        let slab = |axis: usize| {
-            let a = (L::splat(low[axis]) - self.above[axis]) * self.inverse[axis];
-            let b = (L::splat(high[axis]) - self.below[axis]) * self.inverse[axis];
-            (a.min(b), a.max(b))
+        // Where the ray passes a side.
+        let at = |axis: usize, side: usize| {
+            let side_at = L::splat(bounds.0[self.sides[axis][side] % 8]);
+            (side_at - self.origin[axis][side]) * self.inverse[axis]
         };
-        let [x, y, z] = [slab(0), slab(1), slab(2)];
+        let [x, y, z] = [0, 1, 2].map(|axis| (at(axis, 0), at(axis, 1)));
         let crossed = x.0.max(y.0).max(z.0).le(x.1.min(y.1).min(z.1));
-        let near = L::select(self.along_x, x.0, L::select(self.along_y, y.0, z.0));
-        let far = L::select(self.along_x, x.1, L::select(self.along_y, y.1, z.1));
-        crossed & L::literal(0.0).le(far) & near.le(limit)
+        crossed & L::literal(0.0).le(z.1) & z.0.le(limit)
     }
 }
 
 /// The box in the builder's numbers. It only guides the tree's shape, so a rounding does not matter.
 fn rounded<S: Scalar>(bounds: &Bounds<S>) -> Aabb {
     let corner = |v: Vector<S>| v.widened().as_vec3a();
-    Aabb::new(corner(bounds.low), corner(bounds.high))
+    Aabb::new(corner(bounds.low()), corner(bounds.high()))
 }
 
 /// Of the deepest leaf, where the root has 1.

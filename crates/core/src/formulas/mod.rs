@@ -116,7 +116,7 @@ pub(crate) trait Family: Debug + Send + Sync + 'static {
 
 /// What of a ray is the same for all shapes of a kind: computed once, for kinds that are there.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Aim<L: Lane> {
+pub(crate) struct Aim<L> {
     pub(crate) sphere: sphere::Aim<L>,
     pub(crate) triangle: triangle::Aim<L>,
     pub(crate) cylinder: cylinder::Aim<L>,

@@ -53,7 +53,7 @@ impl<S: Scalar> Cylinder<S> {
     pub(crate) fn bounds(&self) -> Bounds<S> {
         let across = Vector::new(self.radius, S::literal(0.0), self.radius);
         let top = Vector { y: self.top, ..self.bottom };
-        Bounds { low: self.bottom - across, high: top + across }
+        Bounds::new(self.bottom - across, top + across)
     }
 
     /// The smaller of the [roots](quadric::roots) above 0 that are on the wall: both are tried, because the

@@ -41,7 +41,7 @@ impl<S: Scalar> Sphere<S> {
 
     pub(crate) fn bounds(&self) -> Bounds<S> {
         let reach = Vector::new(self.radius, self.radius, self.radius);
-        Bounds { low: self.center - reach, high: self.center + reach }
+        Bounds::new(self.center - reach, self.center + reach)
     }
 
     /// The smaller of the [roots](quadric::roots) above 0.

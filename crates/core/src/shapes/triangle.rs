@@ -2,7 +2,7 @@
 
 use super::{SurfacePoint, clearance};
 use crate::lane::{Lane, Mask, Scalar, sign_of_difference};
-use crate::ray::{Ray, miss};
+use crate::ray::{Heading, Ray, miss};
 use crate::scene;
 use crate::tree::Bounds;
 use crate::vector::Vector;
@@ -19,20 +19,11 @@ pub(crate) struct Triangle<S> {
     reach: Vector<S>,
 }
 
-/// What all triangles ask of a ray: the shear that turns it into the axis along which its direction is longest.
-/// Triangles are then tested in the two other coordinates.
+/// What all triangles ask of rays with one heading: the shear that turns them into the axis along which they are
+/// longest. Triangles are then tested in the two other coordinates.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Aim<L: Lane> {
-    /// The rays of a packet by that axis; similar ones are all in one group.
-    groups: [Option<Group<L>>; 3],
-}
-
-/// The rays that are longest along one axis.
-#[derive(Clone, Copy, Debug)]
-struct Group<L: Lane> {
-    /// Which rays these are.
-    members: L::Mask,
-    /// The axes in the order in which coordinates are taken, that of the longest direction last.
+pub(crate) struct Aim<L> {
+    /// The axes in the order in which coordinates are taken.
     order: [usize; 3],
     /// The rays' origin, in this order.
     origin: [L; 3],
@@ -45,34 +36,18 @@ impl<L: Lane> Aim<L> {
     /// Where there are no triangles.
     #[inline(always)]
     pub(crate) fn none() -> Self {
-        Self { groups: [None; 3] }
+        let zero = L::literal(0.0);
+        Self { order: [0, 1, 2], origin: [zero; 3], shear: [zero; 2], along: zero }
     }
 
-    /// For the rays of `wanted`: others hit nothing.
     #[inline(always)]
-    pub(crate) fn new(ray: &Ray<L>, wanted: L::Mask) -> Self {
-        let Vector { x, y, z } = ray.direction.abs();
-        let is_x = wanted & y.lt(x) & z.lt(x);
-        let is_y = wanted & !is_x & z.lt(y);
-        let is_z = wanted & !is_x & !is_y;
-        let group = |members: L::Mask, order: [usize; 3]| {
-            members.any().then(|| {
-                let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
-                let [x, y, z] = order.map(|axis| direction[axis]);
-                Group {
-                    members,
-                    order,
-                    origin: order.map(|axis| origin[axis]),
-                    shear: [x / z, y / z],
-                    along: z,
-                }
-            })
-        };
-        Self { groups: [group(is_x, [1, 2, 0]), group(is_y, [2, 0, 1]), group(is_z, [0, 1, 2])] }
+    pub(crate) fn new(ray: &Ray<L>, heading: Heading) -> Self {
+        let order = heading.order;
+        let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
+        let [x, y, z] = order.map(|axis| direction[axis]);
+        Self { order, origin: order.map(|axis| origin[axis]), shear: [x / z, y / z], along: z }
     }
-}
 
-impl<L: Lane> Group<L> {
     /// Where `v` lies aside of the ray, and how far along the axis. The same rounded point for every
     /// triangle that shares `v`.
     #[inline(always)]
@@ -100,7 +75,7 @@ impl<S: Scalar> Triangle<S> {
 
     pub(crate) fn bounds(&self) -> Bounds<S> {
         let [a, b, c] = self.vertices;
-        Bounds { low: a.min(b).min(c), high: a.max(b).max(c) }
+        Bounds::new(a.min(b).min(c), a.max(b).max(c))
     }
 
     /// The edge test of Woop, Benthin and Wald (Watertight Ray/Triangle Intersection, JCGT 2013):
@@ -114,15 +89,8 @@ impl<S: Scalar> Triangle<S> {
     /// rounded normal and differences, then two sums and a quotient rounded once.
     #[inline(always)]
     pub(crate) fn intersect<L: Lane<Scalar = S>>(&self, ray: &Ray<L>, aim: &Aim<L>, wanted: L::Mask) -> L {
-        aim.groups.iter().flatten().fold(miss(), |t, group| {
-            L::select(group.members, self.intersect_along(ray, group, wanted & group.members), t)
-        })
-    }
-
-    #[inline(always)]
-    fn intersect_along<L: Lane<Scalar = S>>(&self, ray: &Ray<L>, group: &Group<L>, wanted: L::Mask) -> L {
         let zero = L::literal(0.0);
-        let [a, b, c] = self.vertices.map(|v| group.project(v));
+        let [a, b, c] = self.vertices.map(|v| aim.project(v));
         let edge = |[px, py, _]: [L; 3], [qx, qy, _]: [L; 3]| sign_of_difference(px, qy, py, qx);
         let (u, v, w) = (edge(b, c), edge(c, a), edge(a, b));
         let front = zero.le(u) & zero.le(v) & zero.le(w);
@@ -136,7 +104,7 @@ impl<S: Scalar> Triangle<S> {
         let slope = normal.accurate_dot(ray.direction);
         let t = normal.accurate_dot(Vector::splat(self.vertices[0]) - ray.origin) / slope;
         let (lowest, highest) = (a[2].min(b[2]).min(c[2]), a[2].max(b[2]).max(c[2]));
-        let (from, to) = (lowest / group.along, highest / group.along);
+        let (from, to) = (lowest / aim.along, highest / aim.along);
         let t = t.max(from.min(to)).min(from.max(to));
         // A ray parallel to the plane, or a triangle without area, misses.
         L::select(inside & zero.lt(slope.abs()) & zero.lt(t), t, miss())

@@ -1,0 +1,141 @@
+//! A tree of boxes leaves out what a ray does not meet, and nothing else: with it a picture has the bits
+//! that it has when each ray tries each primitive.
+
+use glam::DVec3;
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+use rayweave_core::{Execution, Lanes, Precision, Scene, Search};
+use rayweave_tests::crowd::{Arrangement, Shape, crowd, meshes};
+use rayweave_tests::picture::{difference, in_tiles, plain};
+use rayweave_tests::transform::{enlarged, moved};
+
+const PRECISIONS: [Precision; 2] = [Precision::F32, Precision::F64];
+
+/// What is different with a search, in any packet, from a picture that tries everything.
+fn search_differs(scene: &Scene, size: (u32, u32), precision: Precision) -> Option<String> {
+    let right = in_tiles(scene, size, plain(precision), 1000);
+    Lanes::ALL.into_iter().find_map(|lanes| {
+        let execution = Execution { lanes, search: Search::Auto, ..plain(precision) };
+        let difference = difference(&in_tiles(scene, size, execution, 1000), &right)?;
+        Some(format!("{precision}, {lanes:?}: {difference}"))
+    })
+}
+
+#[track_caller]
+fn assert_search_agrees(scene: &Scene, size: (u32, u32), name: &str) {
+    for precision in PRECISIONS {
+        let difference = search_differs(scene, size, precision);
+        assert_eq!(difference, None, "{name}");
+    }
+}
+
+/// `count` primitives of every shape in every arrangement, at the origin and far from it.
+fn crowds_agree(count: usize, size: (u32, u32), seeds: std::ops::Range<u64>) {
+    for (shape, arrangement) in
+        Shape::ALL.into_iter().flat_map(|shape| Arrangement::ALL.map(|arrangement| (shape, arrangement)))
+    {
+        for seed in seeds.clone() {
+            let scene = crowd(seed, count, shape, arrangement);
+            // Far away a rounding of `f32` is 1/1024, and so is a box's margin many times larger.
+            let offset = if seed % 2 == 0 { DVec3::ZERO } else { DVec3::new(1e4, -7e3, 8e3) };
+            let name = format!("{count} x {shape:?}, {arrangement:?}, seed {seed}, moved by {offset}");
+            assert_search_agrees(&moved(&scene, offset), size, &name);
+        }
+    }
+}
+
+/// Catches a box that is skipped though a ray meets what is in it, and a tie that the order of the
+/// search decides, in trees of few levels.
+#[test]
+fn a_hundred_primitives() {
+    crowds_agree(100, (24, 18), 0..6);
+}
+
+/// Catches the same in deeper trees.
+#[test]
+fn a_thousand_primitives() {
+    crowds_agree(1000, (24, 18), 6..8);
+}
+
+/// Catches a stack that overflows, or numbers of leaves that run into each other.
+#[test]
+fn ten_thousand_primitives() {
+    for (seed, arrangement) in (0..).zip(Arrangement::ALL) {
+        let scene = crowd(seed, 10_000, Shape::Any, arrangement);
+        assert_search_agrees(&scene, (24, 18), &format!("{arrangement:?}"));
+    }
+}
+
+/// Catches a ray lost between two leaves: triangles that share edges, seen along the axes.
+#[test]
+fn closed_meshes() {
+    for seed in 0..24 {
+        let scene = meshes(seed, 1 + seed as usize % 8);
+        let offset = if seed % 3 == 0 { DVec3::new(2e3, 3e3, -1e4) } else { DVec3::ZERO };
+        assert_search_agrees(&moved(&scene, offset), (24, 18), &format!("seed {seed}"));
+    }
+}
+
+/// Catches a threshold that leaves a primitive out of the tree or the list: every count around it.
+#[test]
+fn every_small_count() {
+    for count in 1..=40 {
+        for (seed, arrangement) in (0..).zip([Arrangement::Overlapping, Arrangement::Copies]) {
+            let scene = crowd(seed, count, Shape::Any, arrangement);
+            assert_search_agrees(&scene, (24, 18), &format!("{count} x {arrangement:?}"));
+        }
+    }
+}
+
+/// Catches a split that never ends, and an order that nothing decides: everything in one place.
+#[test]
+fn one_primitive_a_thousand_times() {
+    for shape in [Shape::Sphere, Shape::Triangle, Shape::Cylinder] {
+        let mut scene = crowd(3, 1, shape, Arrangement::Overlapping);
+        // The camera looks at it.
+        let corner = scene.triangles.first().map(|t| t.vertices.iter().sum::<DVec3>() / 3.0);
+        let middle = scene.spheres.first().map(|s| s.center).or(corner);
+        let axis = scene.cylinders.first().map(|c| (c.bottom + c.top) / 2.0);
+        scene.camera.look_at = middle.or(axis).expect("one of them");
+        let materials = scene.materials.len();
+        scene.spheres = (0..1000 * scene.spheres.len()).map(|_| scene.spheres[0]).collect();
+        scene.triangles = (0..1000 * scene.triangles.len()).map(|_| scene.triangles[0]).collect();
+        scene.cylinders = (0..1000 * scene.cylinders.len()).map(|_| scene.cylinders[0]).collect();
+        let spheres = scene.spheres.iter_mut().map(|s| &mut s.material);
+        let triangles = scene.triangles.iter_mut().map(|t| &mut t.material);
+        let cylinders = scene.cylinders.iter_mut().map(|c| &mut c.material);
+        let all = spheres.chain(triangles).chain(cylinders);
+        all.enumerate().for_each(|(i, material)| *material = (i + 2) % materials);
+        assert_search_agrees(&scene, (24, 18), &format!("{shape:?}"));
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: 800,
+        rng_seed: RngSeed::Fixed(2027),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
+
+    /// Catches the same anywhere, at every scale and distance.
+    #[test]
+    fn random_crowds(
+        seed: u64,
+        count in 12..200usize,
+        shape in prop::sample::select(Shape::ALL.to_vec()),
+        arrangement in prop::sample::select(Arrangement::ALL.to_vec()),
+        scale in prop_oneof![Just(1.0), 1e-3..1e3f64],
+        offset in prop_oneof![Just(0.0), 1.0..1e4f64],
+        precision in prop::sample::select(PRECISIONS.to_vec()),
+        lanes in prop::sample::select(Lanes::ALL.to_vec()),
+    ) {
+        let offset = DVec3::new(offset, -0.7 * offset, 0.3 * offset);
+        let scene = enlarged(&moved(&crowd(seed, count, shape, arrangement), offset), scale);
+        prop_assume!(scene.check().is_ok());
+        let right = in_tiles(&scene, (16, 12), plain(precision), 1000);
+        let execution = Execution { lanes, search: Search::Auto, ..plain(precision) };
+        let found = in_tiles(&scene, (16, 12), execution, 1000);
+        prop_assert_eq!(difference(&found, &right), None);
+    }
+}
