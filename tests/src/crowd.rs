@@ -4,9 +4,7 @@ use crate::meshes;
 use crate::random_scene::Draw;
 use glam::DVec3;
 use rayweave_core::Scene;
-use rayweave_core::scene::{
-    Camera, Cylinder, Light, Material, Plane, RenderSettings, Sphere, Triangle,
-};
+use rayweave_core::scene::{Camera, Cylinder, Light, Material, Plane, RenderSettings, Sphere, Triangle};
 
 /// What there is many of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -139,12 +137,7 @@ fn bounded(scene: &Scene) -> usize {
 }
 
 /// Appends what `one` makes, of an entry that is there if it is to be a copy.
-fn add<T: Copy>(
-    draw: &mut Draw,
-    list: &mut Vec<T>,
-    copy: bool,
-    one: impl FnOnce(&mut Draw, Option<T>) -> T,
-) {
+fn add<T: Copy>(draw: &mut Draw, list: &mut Vec<T>, copy: bool, one: impl FnOnce(&mut Draw, Option<T>) -> T) {
     let original = (copy && !list.is_empty()).then(|| list[draw.index(list.len())]);
     list.push(one(draw, original));
 }

@@ -1,8 +1,6 @@
 //! Pictures without any strategy: whatever is true of them is true of the work alone.
 
-use rayweave_core::{
-    Arithmetic, Execution, Image, Lanes, Precision, Rgb, Scene, Search, Tile, Work, tracer,
-};
+use rayweave_core::{Arithmetic, Execution, Image, Lanes, Precision, Rgb, Scene, Search, Tile, Work, tracer};
 use std::num::NonZeroU32;
 
 /// The execution that has nothing of the others': each ray for itself, and against each primitive.
@@ -17,7 +15,8 @@ pub fn plain(arithmetic: impl Into<Arithmetic>) -> Execution {
 pub fn executions(arithmetic: impl Into<Arithmetic>) -> Vec<Execution> {
     let plain = plain(arithmetic);
     let searches = [plain, Execution { search: Search::Auto, ..plain }];
-    let shared = searches.into_iter().flat_map(|e| [false, true].map(|s| Execution { share_samples: s, ..e }));
+    let shared =
+        searches.into_iter().flat_map(|e| [false, true].map(|s| Execution { share_samples: s, ..e }));
     shared.flat_map(|e| Lanes::ALL.map(|lanes| Execution { lanes, ..e })).collect()
 }
 

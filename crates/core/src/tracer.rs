@@ -40,15 +40,21 @@ pub enum Search {
 }
 
 /// How many rays are followed side by side, as a packet.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lanes {
     /// One.
     One,
     /// As many as fill 256 bits: 8 in `f32`, 4 in `f64`.
     Wide256,
     /// As many as fill 512 bits: 16 in `f32`, 8 in `f64`.
-    #[default]
     Wide512,
+}
+
+/// As many as fill a register of the machine that the program is built for; 256 bits if it is smaller.
+impl Default for Lanes {
+    fn default() -> Self {
+        if cfg!(target_feature = "avx512f") { Self::Wide512 } else { Self::Wide256 }
+    }
 }
 
 impl Lanes {

@@ -58,7 +58,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
 
     file.finish(&format.encode(&picture)?)?;
     print(&format!(
-        "{}\n{}, threads: {computing}, {seconds:.3} s, digest {}\n{}\nwritten to {}\n",
+        "{}\n{}, threads: {computing}, {seconds:.6} s, digest {}\n{}\nwritten to {}\n",
         input.describe(),
         strategy.name(),
         picture.digest().short(),

@@ -1,0 +1,337 @@
+//! What planes keep apart and what cones leave out changes no picture: in scenes of a few primitives
+//! the search has the bits of trying everything, also where eyes and lights stand in planes, on
+//! surfaces and inside of things, and where rays run along them.
+
+use glam::DVec3;
+use proptest::collection::vec;
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+use rayweave_core::scene::{Camera, Cylinder, Light, Material, Plane, RenderSettings, Sphere, Triangle};
+use rayweave_core::{Execution, Image, Lanes, Precision, Scene, Search};
+use rayweave_tests::picture::{difference, in_tiles, plain};
+use rayweave_tests::transform::{enlarged, moved};
+
+const PRECISIONS: [Precision; 2] = [Precision::F32, Precision::F64];
+const SIZE: (u32, u32) = (12, 9);
+
+fn picture(scene: &Scene, execution: Execution) -> Image {
+    in_tiles(scene, SIZE, execution, 1000)
+}
+
+/// What is different with a search, in any packet, from a picture that tries everything.
+fn search_differs(scene: &Scene) -> Option<String> {
+    PRECISIONS.into_iter().find_map(|precision| {
+        let right = picture(scene, plain(precision));
+        Lanes::ALL.into_iter().find_map(|lanes| {
+            let execution = Execution { lanes, search: Search::Auto, ..plain(precision) };
+            let difference = difference(&picture(scene, execution), &right)?;
+            Some(format!("{precision}, {lanes:?}: {difference}"))
+        })
+    })
+}
+
+#[track_caller]
+fn assert_search_agrees(scene: &Scene, name: &str) {
+    assert_eq!(search_differs(scene), None, "{name}");
+}
+
+// Scenes that are hard for one thing
+
+fn v(x: f64, y: f64, z: f64) -> DVec3 {
+    DVec3::new(x, y, z)
+}
+
+fn light(position: DVec3) -> Light {
+    Light { position, color: DVec3::ONE, power: 0.7 }
+}
+
+fn plane(point: DVec3, normal: DVec3) -> Plane {
+    Plane { point, normal, material: 0 }
+}
+
+fn sphere(center: DVec3, radius: f64) -> Sphere {
+    Sphere { center, radius, material: 1 }
+}
+
+fn triangle(vertices: [DVec3; 3]) -> Triangle {
+    Triangle { vertices, material: 2 }
+}
+
+fn cylinder(bottom: DVec3, height: f64, radius: f64) -> Cylinder {
+    Cylinder { bottom, top: bottom + height * DVec3::Y, radius, material: 3 }
+}
+
+fn camera(position: DVec3, look_at: DVec3) -> Camera {
+    let up = if position.x == look_at.x && position.z == look_at.z { DVec3::X } else { DVec3::Y };
+    Camera { position, look_at, up, focal_length: 1.0, screen_width: 1.5 }
+}
+
+/// Before a floor with one of each bounded primitive; number 1 of the materials is a mirror.
+fn scene() -> Scene {
+    let material = |color, reflection| Material { specular: 0.5, reflection, ..Material::new(color) };
+    Scene {
+        camera: camera(v(0.5, 1.0, -5.0), v(0.0, 0.5, 0.0)),
+        render: RenderSettings {
+            background: v(0.1, 0.2, 0.3),
+            max_reflections: 2,
+            antialiasing: 0,
+            ..RenderSettings::default()
+        },
+        lights: vec![light(v(3.0, 5.0, -2.0))],
+        materials: vec![
+            material(v(0.9, 0.8, 0.7), 0.25),
+            material(v(0.2, 0.9, 0.4), 0.6),
+            material(v(0.3, 0.4, 1.0), 0.0),
+            material(v(1.0, 0.5, 0.1), 0.0),
+        ],
+        planes: vec![plane(v(0.0, -1.0, 0.0), DVec3::Y)],
+        spheres: vec![sphere(v(-1.0, 0.0, 1.0), 1.0)],
+        triangles: vec![triangle([v(0.0, -1.0, 1.0), v(2.0, -1.0, 0.0), v(1.0, 2.0, 1.0)])],
+        cylinders: vec![cylinder(v(-2.0, -1.0, -1.0), 1.5, 0.5)],
+    }
+}
+
+/// A scene, and the same moved and enlarged so that its numbers are no longer whole.
+fn placed(scene: &Scene) -> [Scene; 4] {
+    [
+        scene.clone(),
+        moved(scene, v(0.1, -0.3, 0.7)),
+        enlarged(&moved(scene, v(1000.1, -700.3, 300.7)), 0.3),
+        moved(&enlarged(scene, 1e-3), v(0.7, 0.1, -0.3)),
+    ]
+}
+
+fn assert_agrees_everywhere(scene: &Scene, name: &str) {
+    for (i, scene) in placed(scene).iter().enumerate() {
+        assert_search_agrees(scene, &format!("{name}, place {i}"));
+    }
+}
+
+/// Catches a side that is told of an eye or a light in the plane itself, by rounding: with the eye
+/// there, nothing is on either side; a light there lights nothing of the plane, and the plane hides it.
+#[test]
+fn eye_and_light_in_a_plane() {
+    let tilted = v(0.3, 1.0, -0.2);
+    for normal in [DVec3::Y, -DVec3::Y, tilted, -tilted, v(1.0, 1.0, 1.0), v(1e-9, 1.0, 0.0)] {
+        let mut scene = scene();
+        scene.planes.push(plane(scene.camera.position, normal));
+        assert_agrees_everywhere(&scene, &format!("eye in the plane, {normal}"));
+        let mut along = scene.clone();
+        let aside = normal.any_orthogonal_vector();
+        along.camera.look_at = along.camera.position + aside;
+        along.camera.up = normal;
+        assert_agrees_everywhere(&along, &format!("eye in the plane and along it, {normal}"));
+        scene.lights.push(light(scene.camera.position + aside));
+        assert_agrees_everywhere(&scene, &format!("both in the plane, {normal}"));
+
+        let mut scene = self::scene();
+        scene.lights.push(light(v(1.0, 2.5, -1.0)));
+        scene.planes.push(plane(scene.lights[1].position + 3.0 * aside, normal));
+        assert_agrees_everywhere(&scene, &format!("light in the plane, {normal}"));
+    }
+}
+
+/// Catches a light that is left out though it lights something, or one behind a plane that lights
+/// what is before it: with such a light a picture is what it is without.
+#[test]
+fn a_light_behind_a_plane_lights_nothing() {
+    for (point, normal) in [
+        (v(0.0, -1.0, 0.0), DVec3::Y),
+        (v(0.0, -1.0, 0.0), -DVec3::Y),
+        (v(0.0, 0.0, 4.0), v(0.1, 0.2, 1.0)),
+        (v(4.0, 0.0, 0.0), v(-1.0, 0.3, 0.0)),
+    ] {
+        let mut without = scene();
+        without.planes = vec![plane(point, normal)];
+        for distance in [1e-3, 1.0, 100.0] {
+            let eye = without.camera.position;
+            let height = (eye - point).dot(normal.normalize());
+            let behind = point - distance * height.signum() * normal.normalize();
+            let mut with = without.clone();
+            with.lights.insert(0, light(behind));
+            assert_agrees_everywhere(&with, &format!("{distance} behind {normal}"));
+            for (with, without) in placed(&with).iter().zip(placed(&without)) {
+                for precision in PRECISIONS {
+                    let [found, right] = [with, &without].map(|scene| picture(scene, precision.into()));
+                    assert_eq!(difference(&found, &right), None, "{distance} behind {normal}, {precision}");
+                }
+            }
+        }
+    }
+}
+
+/// Catches a cone around a primitive that has no outside: eyes and lights in it, on it, at its middle.
+#[test]
+fn eye_and_light_in_and_on_things() {
+    let scene = scene();
+    let [a, b, c] = scene.triangles[0].vertices;
+    let (sphere, cylinder) = (scene.spheres[0], scene.cylinders[0]);
+    let axis = (cylinder.bottom + cylinder.top) / 2.0;
+    for place in [
+        sphere.center,
+        sphere.center + v(0.25, 0.5, 0.0),
+        sphere.center + v(0.6, 0.8, 0.0),
+        sphere.center + v(0.0, 1.0, 0.0),
+        sphere.center + v(0.0, 1.0 + 1e-7, 0.0),
+        a,
+        (a + b) / 2.0,
+        (a + b + c) / 3.0,
+        // In the triangle's plane.
+        a + 2.0 * (b - a) + (c - a),
+        axis,
+        axis + v(0.3, 0.0, 0.4),
+        cylinder.top,
+        cylinder.top + DVec3::Y,
+    ] {
+        let mut lit = scene.clone();
+        lit.lights.push(light(place));
+        assert_agrees_everywhere(&lit, &format!("light at {place}"));
+        for target in [DVec3::ZERO, sphere.center, axis, place - DVec3::Y, place + DVec3::X] {
+            if target != place {
+                let seen = Scene { camera: camera(place, target), ..scene.clone() };
+                assert_agrees_everywhere(&seen, &format!("eye at {place} looks at {target}"));
+            }
+        }
+    }
+}
+
+/// Catches a point that is taken to be on the eye's side of a plane though a thing cuts the plane
+/// there: what is on the other side is seen by no ray.
+#[test]
+fn things_that_cut_planes() {
+    for normal in [DVec3::Y, v(0.3, 1.0, -0.2), DVec3::Z] {
+        for distance in [-1.0, -0.5, 0.0, 0.25, 1.0] {
+            let mut scene = scene();
+            scene.lights.extend([light(v(-3.0, -6.0, 1.0)), light(v(0.0, 2.0, 7.0))]);
+            scene.planes.push(plane(scene.spheres[0].center + distance * normal.normalize(), normal));
+            assert_agrees_everywhere(&scene, &format!("a sphere, {normal}, {distance}"));
+            scene.planes[1].point = scene.triangles[0].vertices[2] - distance * normal.normalize();
+            assert_agrees_everywhere(&scene, &format!("a triangle, {normal}, {distance}"));
+            scene.planes[1].point = scene.cylinders[0].bottom - distance * normal.normalize();
+            assert_agrees_everywhere(&scene, &format!("a cylinder, {normal}, {distance}"));
+        }
+    }
+}
+
+/// Catches planes that are told apart by pairs: a wedge, a room and two that are one.
+#[test]
+fn planes_that_cut_each_other() {
+    let wedge = vec![plane(DVec3::ZERO, v(1.0, 1.0, 0.0)), plane(DVec3::ZERO, v(-1.0, 1.0, 0.0))];
+    let walls = [DVec3::X, DVec3::Y, DVec3::Z].map(|normal| [normal, -normal]);
+    let room = walls.as_flattened().iter().map(|&normal| plane(-6.0 * normal, normal)).collect();
+    let twice = vec![plane(-DVec3::Y, DVec3::Y), plane(-DVec3::Y, -3.0 * DVec3::Y)];
+    let crossing = vec![plane(DVec3::ZERO, v(0.1, 1.0, 0.0)), plane(DVec3::ZERO, v(-0.1, 1.0, 0.0))];
+    for (name, planes) in [("wedge", wedge), ("room", room), ("twice", twice), ("crossing", crossing)] {
+        for eye in [v(0.0, 1.0, -5.0), v(-5.0, 1.0, -1.0), v(1.0, -5.0, 0.5), v(0.25, 0.5, -3.0)] {
+            let mut scene = Scene { planes: planes.clone(), ..scene() };
+            scene.camera = camera(eye, v(0.0, 0.5, 0.0));
+            let corners = [v(0.0, 5.0, 0.0), v(5.0, 0.5, -1.0), v(-5.0, 0.0, 1.0), v(0.5, -5.0, 0.0)];
+            scene.lights = corners.map(light).into();
+            assert_agrees_everywhere(&scene, &format!("{name} from {eye}"));
+        }
+    }
+}
+
+/// Catches a lane that takes a NaN or an infinity another way than a single ray does: rays along an
+/// axis, a cylinder's axis and wall, in a triangle's plane and in a plane, through corners.
+#[test]
+fn rays_along_things() {
+    for (from, to) in [
+        (v(-2.0, 5.0, -1.0), v(-2.0, 0.0, -1.0)),
+        (v(-2.0, -5.0, -1.0), v(-2.0, 0.0, -1.0)),
+        (v(-1.5, 5.0, -1.0), v(-1.5, 0.0, -1.0)),
+        (v(-1.0, 0.0, -5.0), v(-1.0, 0.0, 0.0)),
+        (v(0.0, -1.0, -5.0), v(0.0, -1.0, 0.0)),
+        (v(5.0, 2.0, 1.0), v(0.0, 2.0, 1.0)),
+        (v(-5.0, -1.0, 1.0), v(0.0, -1.0, 1.0)),
+        (v(0.0, 1.0, -1.0), v(0.0, 1.0, 0.0)),
+        (v(0.0, 5.0, 0.0), v(0.0, 0.0, 0.0)),
+    ] {
+        for thin in [1.5, 1e-3, 1e-20] {
+            let mut scene = scene();
+            scene.camera = camera(from, to);
+            // All rays of a picture this narrow are parallel.
+            scene.camera.screen_width = thin;
+            scene.planes.push(plane(v(0.0, 0.0, 1.0), DVec3::Z));
+            // Upright and lying, as the axes are.
+            scene.triangles.push(triangle([v(-2.0, 0.0, -1.0), v(0.0, 0.0, -1.0), v(-2.0, 3.0, -1.0)]));
+            scene.triangles.push(triangle([v(-3.0, 1.0, -3.0), v(3.0, 1.0, -3.0), v(0.0, 1.0, 3.0)]));
+            assert_agrees_everywhere(&scene, &format!("from {from} to {to}, {thin} wide"));
+            // A tree's boxes as well.
+            let copies = (0..12).map(|i| sphere(v(-1.0, 0.0, f64::from(i)), 1.0));
+            scene.spheres.extend(copies);
+            assert_agrees_everywhere(&scene, &format!("a tree, from {from} to {to}, {thin} wide"));
+        }
+    }
+}
+
+// Scenes of whole numbers
+
+/// Few values, so that things meet, touch and lie in each other's planes.
+fn place() -> impl Strategy<Value = DVec3> {
+    let coordinate = || (-6..=6i32).prop_map(|k| f64::from(k) / 2.0);
+    [coordinate(), coordinate(), coordinate()].prop_map(DVec3::from_array)
+}
+
+fn normal() -> impl Strategy<Value = DVec3> {
+    let axis = (0..3usize, any::<bool>()).prop_map(|(axis, back)| {
+        let mut normal = DVec3::ZERO;
+        normal[axis] = if back { -1.0 } else { 1.0 };
+        normal
+    });
+    prop_oneof![axis, place().prop_filter("not zero", |v| *v != DVec3::ZERO)]
+}
+
+fn on_the_grid() -> impl Strategy<Value = Scene> {
+    let size = || (1..=6u32).prop_map(|k| f64::from(k) / 2.0);
+    let planes = vec((place(), normal(), 0..4usize), 0..4);
+    let spheres = vec((place(), size(), 0..4usize), 0..4);
+    let triangles = vec(([place(), place(), place()], 0..4usize), 0..4);
+    let cylinders = vec((place(), size(), size(), 0..4usize), 0..3);
+    let view = (place(), place(), prop_oneof![Just(1.5), Just(0.3), Just(6.0)]);
+    (planes, spheres, triangles, cylinders, vec(place(), 1..4), view).prop_map(
+        |(planes, spheres, triangles, cylinders, lights, (eye, target, screen_width))| Scene {
+            camera: Camera { screen_width, ..camera(eye, target) },
+            lights: lights.into_iter().map(light).collect(),
+            planes: planes
+                .into_iter()
+                .map(|(point, normal, material)| Plane { point, normal, material })
+                .collect(),
+            spheres: (spheres.into_iter())
+                .map(|(center, radius, material)| Sphere { center, radius, material })
+                .collect(),
+            triangles: (triangles.into_iter())
+                .map(|(vertices, material)| Triangle { vertices, material })
+                .collect(),
+            cylinders: (cylinders.into_iter())
+                .map(|(bottom, height, radius, material)| Cylinder {
+                    material,
+                    ..cylinder(bottom, height, radius)
+                })
+                .collect(),
+            ..scene()
+        },
+    )
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: 4000,
+        rng_seed: RngSeed::Fixed(2028),
+        failure_persistence: None,
+        max_global_rejects: 100_000,
+        ..ProptestConfig::default()
+    })]
+
+    /// Catches all of this in whatever comes together by chance.
+    #[test]
+    fn scenes_on_a_grid(
+        scene in on_the_grid(),
+        placement in 0..4usize,
+    ) {
+        prop_assume!(scene.check().is_ok());
+        let scene = &placed(&scene)[placement];
+        prop_assume!(scene.check().is_ok());
+        prop_assert_eq!(search_differs(scene), None);
+    }
+}
