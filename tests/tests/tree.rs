@@ -4,6 +4,7 @@
 use glam::DVec3;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
+use rayweave_core::scene::{Cylinder, Sphere, Triangle};
 use rayweave_core::{Execution, Lanes, Precision, Scene, Search};
 use rayweave_tests::crowd::{Arrangement, Shape, crowd, meshes};
 use rayweave_tests::picture::{difference, in_tiles, plain};
@@ -87,10 +88,14 @@ fn every_small_count() {
     }
 }
 
-/// Catches a split that never ends, and an order that nothing decides: everything in one place.
+/// Catches a split that never ends, and an order that nothing decides: everything in one place. From
+/// some number on such a tree is too deep to be used.
 #[test]
-fn one_primitive_a_thousand_times() {
-    for shape in [Shape::Sphere, Shape::Triangle, Shape::Cylinder] {
+fn one_primitive_many_times() {
+    for (shape, count) in [Shape::Sphere, Shape::Triangle, Shape::Cylinder]
+        .into_iter()
+        .flat_map(|shape| [12, 40, 100, 1000].map(|count| (shape, count)))
+    {
         let mut scene = crowd(3, 1, shape, Arrangement::Overlapping);
         // The camera looks at it.
         let corner = scene.triangles.first().map(|t| t.vertices.iter().sum::<DVec3>() / 3.0);
@@ -98,16 +103,23 @@ fn one_primitive_a_thousand_times() {
         let axis = scene.cylinders.first().map(|c| (c.bottom + c.top) / 2.0);
         scene.camera.look_at = middle.or(axis).expect("one of them");
         let materials = scene.materials.len();
-        scene.spheres = (0..1000 * scene.spheres.len()).map(|_| scene.spheres[0]).collect();
-        scene.triangles = (0..1000 * scene.triangles.len()).map(|_| scene.triangles[0]).collect();
-        scene.cylinders = (0..1000 * scene.cylinders.len()).map(|_| scene.cylinders[0]).collect();
-        let spheres = scene.spheres.iter_mut().map(|s| &mut s.material);
-        let triangles = scene.triangles.iter_mut().map(|t| &mut t.material);
-        let cylinders = scene.cylinders.iter_mut().map(|c| &mut c.material);
-        let all = spheres.chain(triangles).chain(cylinders);
-        all.enumerate().for_each(|(i, material)| *material = (i + 2) % materials);
-        assert_search_agrees(&scene, (24, 18), &format!("{shape:?}"));
+        let material = |i: usize| (i + 2) % materials;
+        scene.spheres =
+            repeated(&scene.spheres, count, |sphere, i| Sphere { material: material(i), ..sphere });
+        scene.triangles =
+            repeated(&scene.triangles, count, |triangle, i| Triangle { material: material(i), ..triangle });
+        scene.cylinders =
+            repeated(&scene.cylinders, count, |cylinder, i| Cylinder { material: material(i), ..cylinder });
+        assert_search_agrees(&scene, (24, 18), &format!("{count} x {shape:?}"));
     }
+}
+
+/// The only entry of a list, if there is one, `count` times.
+fn repeated<T: Copy>(list: &[T], count: usize, with_number: impl Fn(T, usize) -> T) -> Vec<T> {
+    list.iter()
+        .flat_map(|&entry| (0..count).map(move |i| (entry, i)))
+        .map(|(e, i)| with_number(e, i))
+        .collect()
 }
 
 proptest! {

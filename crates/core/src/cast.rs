@@ -89,6 +89,6 @@ impl<S: Scalar, F: Family> Cast for World<S, F> {
 
     fn color(&self, origin: DVec3, direction: DVec3) -> [f64; 3] {
         let direction = Vector::<S>::rounded(direction).unit();
-        self.trace(Ray { origin: Vector::rounded(origin), direction }, true, false).widened().to_array()
+        self.trace(Ray { origin: Vector::rounded(origin), direction }, true, false).color.widened().to_array()
     }
 }

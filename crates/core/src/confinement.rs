@@ -1,7 +1,10 @@
 //! What planes keep apart: no ray crosses one, since it ends there.
 //!
 //! So if all rays start at the eye, everything they ever reach is on the eye's side of every plane. A light on the
-//! other side lights nothing, and one on this side is hidden by no plane, which is convex.
+//! other side lights nothing, and one on this side is hidden by no plane, since what is on one side is convex.
+//!
+//! That holds for points. A computed point may be some roundings behind a plane that it is next to, and would then be
+//! in its shadow: so this is not only a saving but part of what the robust formulas mean, in every search.
 
 use crate::scene::{Plane, Scene, unit};
 use glam::DVec3;

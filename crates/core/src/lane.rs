@@ -82,6 +82,14 @@ pub trait Lane:
     fn first(mask: Self::Mask, numbers: [Self; 3]) -> Option<[Self::Scalar; 3]>;
     /// The index in the first lane where the mask holds.
     fn first_index(mask: Self::Mask, indices: Self::Index) -> Option<u32>;
+    /// A number that, as good as certainly, only these two in this order give; of 32 bits.
+    fn mix(index: Self::Index, with: Self::Index) -> Self::Index;
+    /// Overwrites the first `LANES` numbers of `numbers`.
+    ///
+    /// # Panics
+    ///
+    /// If there are fewer.
+    fn store_index(index: Self::Index, numbers: &mut [u32]);
     /// The lanes that hold `index`.
     fn index_equals(indices: Self::Index, index: u32) -> Self::Mask;
     /// The lanes that hold an index above `index`.
@@ -112,6 +120,10 @@ pub trait Scalar: Lane<Scalar = Self, Mask = bool, Index = u32> + Default + Send
     /// The nearest `f32`, in which pictures are kept.
     fn to_f32(self) -> f32;
 }
+
+/// An odd number near 2^32 over the golden ratio, which spreads what it multiplies (Knuth, The Art of Computer
+/// Programming 3, 1973, 6.4).
+pub(crate) const MIX: u32 = 0x9e37_79b1;
 
 impl Mask for bool {
     #[inline(always)]
@@ -195,6 +207,14 @@ macro_rules! scalar {
             #[inline(always)]
             fn first_index(mask: bool, index: u32) -> Option<u32> {
                 mask.then_some(index)
+            }
+            #[inline(always)]
+            fn mix(index: u32, with: u32) -> u32 {
+                (index.rotate_left(5) ^ with).wrapping_mul(MIX)
+            }
+            #[inline(always)]
+            fn store_index(index: u32, numbers: &mut [u32]) {
+                numbers[0] = index;
             }
             #[inline(always)]
             fn index_equals(a: u32, b: u32) -> bool {

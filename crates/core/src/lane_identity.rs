@@ -134,6 +134,12 @@ impl Lane for Quad {
     fn first_index(mask: QuadMask, indices: [u32; 4]) -> Option<u32> {
         mask.0.iter().position(|&lane| lane).map(|i| indices[i])
     }
+    fn mix(index: [u32; 4], with: [u32; 4]) -> [u32; 4] {
+        from_fn(|i| f32::mix(index[i], with[i]))
+    }
+    fn store_index(index: [u32; 4], numbers: &mut [u32]) {
+        numbers[..4].copy_from_slice(&index);
+    }
     fn index_equals(indices: [u32; 4], index: u32) -> QuadMask {
         QuadMask(indices.map(|i| i == index))
     }
@@ -204,7 +210,7 @@ fn four_lanes_give_the_bits_of_one() {
     let world = World::<f32, Robust>::new(&scene, None, Search::Exhaustive);
     let camera = Camera::<f32>::new(&scene.camera, 40, 1);
     let bits = |right: f32, down: f32| {
-        let color = world.trace(camera.ray(right, down), true, false);
+        let color = world.trace(camera.ray(right, down), true, false).color;
         [color.x, color.y, color.z].map(f32::to_bits)
     };
     // Neighbours first, then lanes that have nothing to do with each other.
@@ -214,7 +220,7 @@ fn four_lanes_give_the_bits_of_one() {
                 let places: [f32; 4] = from_fn(|i| f32::from((right + 39 + i as i16 * stride) % 79 - 39));
                 let down = f32::from(down);
                 let rays = camera.ray(Quad(places), Quad::splat(down));
-                let color = world.trace(rays, QuadMask([true, true, false, true]), false);
+                let color = world.trace(rays, QuadMask([true, true, false, true]), false).color;
                 for lane in [0, 1, 3] {
                     let found = [color.x, color.y, color.z].map(|channel| channel.0[lane].to_bits());
                     assert_eq!(found, bits(places[lane], down), "lane {lane} at ({}, {down})", places[lane]);

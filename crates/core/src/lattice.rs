@@ -4,6 +4,7 @@
 use crate::image::{Rgb, Tile};
 use crate::lane::Scalar;
 use crate::samples::Colors;
+use crate::vector::Vector;
 
 /// The rows of a lattice on their way into the pixels of a tile.
 ///
@@ -65,6 +66,15 @@ impl<'a, S: Scalar> LatticeSums<'a, S> {
             for (&slot, &color) in self.slots.iter().zip(channel) {
                 kept[slot as usize] = color;
             }
+        }
+    }
+
+    /// Takes over the colour of one point of the strip.
+    #[inline(always)]
+    pub(crate) fn set(&mut self, column: usize, row: usize, color: Vector<S>) {
+        let slot = self.slot(column, row);
+        for (kept, channel) in self.strip.iter_mut().zip(color.to_array()) {
+            kept[slot] = channel;
         }
     }
 

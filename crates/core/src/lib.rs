@@ -8,6 +8,7 @@
 //!
 //! This crate starts no thread, opens no file and reads no clock.
 
+mod adaptive;
 mod antialiasing;
 mod bundle;
 mod camera;
@@ -24,6 +25,7 @@ mod packet;
 pub mod precision;
 mod primitives;
 mod ray;
+mod sample_count;
 mod samples;
 pub mod scene;
 mod shapes;
@@ -38,6 +40,7 @@ pub use cast::Caster;
 pub use formulas::{Arithmetic, Formulas};
 pub use image::{Area, Digest, Image, Rgb, Tile};
 pub use precision::Precision;
+pub use sample_count::primary_rays;
 pub use scene::{Sampling, Scene};
 pub use strategy::{Plan, Renderer, Strategy, StrategyError, ThreadsStart};
 pub use tracer::{Execution, Lanes, Search, tracer};

@@ -3,7 +3,7 @@
 //! Each operation rounds as the one of a single number does, so a packet gives each lane the bits of
 //! one ray alone. Where the machine has no register of that width, `wide` uses several smaller ones.
 
-use crate::lane::{Lane, Mask};
+use crate::lane::{Lane, MIX, Mask};
 use wide::{f32x8, f32x16, f64x4, f64x8, u32x8, u32x16, u64x4, u64x8};
 
 macro_rules! packet {
@@ -105,6 +105,18 @@ macro_rules! packet {
                 let lanes = mask.to_bitmask();
                 // An index came from a `u32`.
                 (lanes != 0).then(|| indices.to_array()[lanes.trailing_zeros() as usize] as u32)
+            }
+            #[inline(always)]
+            fn mix(index: $index, with: $index) -> $index {
+                let low = $index::splat(u32::MAX.into());
+                let rotated = ((index << 5_u32) | (index >> 27_u32)) & low;
+                ((rotated ^ with) * $index::splat(MIX.into())) & low
+            }
+            #[inline(always)]
+            fn store_index(index: $index, numbers: &mut [u32]) {
+                for (number, lane) in numbers[..$lanes].iter_mut().zip(index.to_array()) {
+                    *number = lane as u32;
+                }
             }
             #[inline(always)]
             fn index_equals(indices: $index, index: u32) -> Self {

@@ -1,6 +1,7 @@
 //! Lists of samples: where they lie, and what colour each has.
 
 use crate::lane::{Lane, Scalar};
+use crate::trace::Traced;
 use crate::vector::Vector;
 
 /// Places in the picture, in half steps of the filter's from its middle.
@@ -40,6 +41,8 @@ impl<S: Scalar> Places<S> {
 #[derive(Debug, Default)]
 pub(crate) struct Colors<S> {
     pub(crate) channels: [Vec<S>; 3],
+    /// What each saw: see [`Traced`].
+    pub(crate) trails: Vec<u32>,
 }
 
 impl<S: Scalar> Colors<S> {
@@ -47,6 +50,7 @@ impl<S: Scalar> Colors<S> {
         for channel in &mut self.channels {
             channel.resize(count, S::literal(0.0));
         }
+        self.trails.resize(count, 0);
     }
 
     pub(crate) fn get(&self, i: usize) -> Vector<S> {
@@ -55,10 +59,11 @@ impl<S: Scalar> Colors<S> {
     }
 
     #[inline(always)]
-    pub(crate) fn store<L: Lane<Scalar = S>>(&mut self, first: usize, color: Vector<L>) {
+    pub(crate) fn store<L: Lane<Scalar = S>>(&mut self, first: usize, Traced { color, trail }: Traced<L>) {
         let [red, green, blue] = &mut self.channels;
         color.x.store(&mut red[first..]);
         color.y.store(&mut green[first..]);
         color.z.store(&mut blue[first..]);
+        L::store_index(trail, &mut self.trails[first..]);
     }
 }

@@ -56,6 +56,10 @@ pub struct RenderSettings {
     pub antialiasing: u32,
     /// Where in and around a pixel these samples lie.
     pub sampling: Sampling,
+    /// Whether lattice points between pixel centres are traced only where those centres differ: in what is hit,
+    /// which lights it sees, or the same of what it mirrors. Elsewhere they are interpolated. Of no effect on other
+    /// samples than the lattice's.
+    pub adaptive: bool,
 }
 
 /// Where the samples of a pixel lie. Both patterns are the same for every pixel, and tend to the
@@ -81,7 +85,13 @@ impl fmt::Display for Sampling {
 
 impl Default for RenderSettings {
     fn default() -> Self {
-        Self { background: DVec3::ZERO, max_reflections: 4, antialiasing: 2, sampling: Sampling::Lattice }
+        Self {
+            background: DVec3::ZERO,
+            max_reflections: 4,
+            antialiasing: 2,
+            sampling: Sampling::Lattice,
+            adaptive: false,
+        }
     }
 }
 

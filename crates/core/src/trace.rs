@@ -25,7 +25,17 @@ pub(crate) struct World<S, F> {
     eye: Option<Bundle<S>>,
     background: Vector<S>,
     max_reflections: u32,
+    /// Whether it is asked for.
+    trails: bool,
     formulas: PhantomData<F>,
+}
+
+/// What a ray brings back.
+pub(crate) struct Traced<L: Lane> {
+    pub(crate) color: Vector<L>,
+    /// The same number for rays that hit the same primitives in the same order, each seen by the same lights; 0 if
+    /// nobody asks.
+    pub(crate) trail: L::Index,
 }
 
 /// A point to be lit: where, how it is turned, how it answers.
@@ -42,7 +52,8 @@ impl<S: Scalar, F: Family> World<S, F> {
         let primitives = Primitives::new(scene, search);
         let cones = search == Search::Auto && !primitives.are_in_a_tree();
         let bundle = |point: DVec3| cones.then(|| Bundle::new(scene, point));
-        let confined = eye.filter(|_| search == Search::Auto);
+        // Formulas that let a ray slip through a plane may bring it anywhere.
+        let confined = eye.filter(|_| F::FAITHFUL);
         let lights = scene.lights.iter().filter_map(|light| {
             let planes = hiding_planes(scene, light.position, confined, S::ROUNDOFF)?;
             Some(Light::new(light, planes, bundle(light.position)))
@@ -54,6 +65,7 @@ impl<S: Scalar, F: Family> World<S, F> {
             materials: scene.materials.iter().map(Material::new).collect(),
             background: Vector::rounded(scene.render.background),
             max_reflections: scene.render.max_reflections,
+            trails: scene.render.adaptive,
             formulas: PhantomData,
         }
     }
@@ -68,11 +80,12 @@ impl<S: Scalar, F: Family> World<S, F> {
         mut ray: Ray<L>,
         mut active: L::Mask,
         from_eye: bool,
-    ) -> Vector<L> {
+    ) -> Traced<L> {
         let mut bundle = self.eye.as_ref().filter(|_| from_eye);
         let (zero, one) = (L::literal(0.0), L::literal(1.0));
         let mut color = Vector::zero();
         let mut share = one;
+        let mut trail = L::splat_index(0);
         for bounce in 0..=self.max_reflections {
             let hit = self.primitives.nearest::<L, F>(&ray, active, bundle.take());
             let missed = active & !hit.exists();
@@ -85,7 +98,11 @@ impl<S: Scalar, F: Family> World<S, F> {
             let kept = one - surface.finish.reflection;
             // A full mirror has no light of its own to look for.
             let shown = active & zero.lt(kept);
-            let lit = self.shade(&surface, &ray, shown);
+            if self.trails {
+                let longer = L::mix(L::mix(trail, L::splat_index(1)), hit.primitive);
+                trail = L::select_index(active, longer, trail);
+            }
+            let lit = self.shade(&surface, &ray, shown, &mut trail);
             color = Vector::select(shown, color + lit * (share * kept), color);
             active = active & zero.lt(surface.finish.reflection);
             if bounce == self.max_reflections || !active.any() {
@@ -94,7 +111,7 @@ impl<S: Scalar, F: Family> World<S, F> {
             share = share * surface.finish.reflection;
             ray = mirrored(&ray, &surface.at);
         }
-        color
+        Traced { color, trail }
     }
 
     /// What is hit: each distinct primitive is looked up once, for all lanes that hit it.
@@ -120,14 +137,20 @@ impl<S: Scalar, F: Family> World<S, F> {
 
     /// Phong's sum over the lights that a point sees.
     #[inline(always)]
-    fn shade<L: Lane<Scalar = S>>(&self, surface: &Surface<L>, ray: &Ray<L>, active: L::Mask) -> Vector<L> {
+    fn shade<L: Lane<Scalar = S>>(
+        &self,
+        surface: &Surface<L>,
+        ray: &Ray<L>,
+        active: L::Mask,
+        trail: &mut L::Index,
+    ) -> Vector<L> {
         let (zero, two) = (L::literal(0.0), L::literal(2.0));
         let Surface { at, finish } = surface;
         let start = at.start();
         let start_reach = start.sum_of_magnitudes();
         let facing = at.normal.dot(ray.direction);
         let mut color = finish.color * finish.ambient;
-        for light in &self.lights {
+        for (number, light) in (1..).zip(&self.lights) {
             // Lit from where shadow rays start, which is on the viewer's side for certain: a light
             // in the surface itself then stands below it, and no rounding makes it shine.
             let toward = Vector::splat(light.position) - start;
@@ -145,6 +168,9 @@ impl<S: Scalar, F: Family> World<S, F> {
             let lit = above & !self.primitives.blocked::<L, F>(&shadow_ray, limit, above, &path, light);
             if !lit.any() {
                 continue;
+            }
+            if self.trails {
+                *trail = L::select_index(lit, L::mix(*trail, L::splat_index(number)), *trail);
             }
             // m . -d with m = 2 (n . l) n - l.
             let mirror_cosine = to_light.dot(ray.direction) - two * cosine * facing;

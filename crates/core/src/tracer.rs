@@ -1,5 +1,6 @@
 //! The tracer as [`Work`]: any tile of a scene's picture.
 
+use crate::adaptive::Bands;
 use crate::antialiasing::Filter;
 use crate::camera::Camera;
 use crate::formulas::{Arithmetic, Compiled, Family};
@@ -31,8 +32,8 @@ pub struct Execution {
 /// depends on where they look.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Search {
-    /// What the scene's shape does not rule out: by planes that no ray crosses, by cones of directions around the
-    /// eye and the lights, or, among many primitives, by a tree of boxes.
+    /// What the scene's shape does not rule out: by cones of directions around the eye and the lights, or, among many
+    /// primitives, by a tree of boxes.
     #[default]
     Auto,
     /// Each: the definition, to hold the other against.
@@ -129,6 +130,7 @@ struct Tracer<L: Lane, F> {
     width: u32,
     height: u32,
     share_samples: bool,
+    adaptive: bool,
     lanes: PhantomData<fn(L)>,
 }
 
@@ -143,6 +145,7 @@ impl<L: Lane, F: Family> Tracer<L, F> {
             width,
             height,
             share_samples: execution.share_samples,
+            adaptive: scene.render.adaptive,
             lanes: PhantomData,
         }
     }
@@ -223,6 +226,32 @@ impl<L: Lane, F: Family> Tracer<L, F> {
             }
         }
     }
+
+    /// The lattice over the tile and around it; points that need no ray are interpolated.
+    fn render_adaptive(&self, tile: &mut Tile<'_>, weights: &[L::Scalar]) {
+        let (area, density) = (tile.area(), self.filter.density());
+        let half_steps = |i: i64| L::Scalar::from_f64(2.0 * i as f64);
+        let left = self.centre(area.x, self.width) + half_steps(-i64::from(density));
+        let top = self.centre(area.y, self.height) + half_steps(-i64::from(density));
+        let (mut places, mut colors) = (Places::default(), Colors::default());
+        let mut sums = LatticeSums::new(weights, density as usize, area.width as usize);
+        sums.start_strip(density as usize);
+        let mut bands = Bands::new(density as usize, area.width as usize);
+        for centres in 0..area.height + 2 {
+            // The band ends at lattice row `last`; of the first one there is this row only.
+            let last = i64::from(centres * density);
+            bands.place_centres(&mut places);
+            self.trace(&places, (left, top + half_steps(last)), &mut colors);
+            bands.take_centres(&colors);
+            bands.interpolate(&mut sums, &mut places);
+            let first = last + 1 - i64::from(density);
+            self.trace(&places, (left, top + half_steps(first)), &mut colors);
+            bands.take_traced(&colors, &mut sums);
+            for row in first.max(0)..=last {
+                sums.add_row((row - first) as usize, row as usize, tile);
+            }
+        }
+    }
 }
 
 /// Samples that are traced together: enough to fill packets, few enough to stay in the cache.
@@ -248,6 +277,7 @@ fn for_each_in_blocks(width: u32, height: u32, mut place: impl FnMut(u32, u32)) 
 impl<L: Lane, F: Family> Work for Tracer<L, F> {
     fn render(&self, tile: &mut Tile<'_>) {
         match self.filter.lattice_weights() {
+            Some(weights) if self.adaptive => self.render_adaptive(tile, weights),
             Some(weights) if self.share_samples => self.render_shared(tile, weights),
             _ => self.render_alone(tile),
         }

@@ -28,16 +28,29 @@ pub struct Input {
     pub execution: Execution,
     /// Why this precision.
     pub reason: String,
+    /// Of the scene's meshes, because they have no area.
+    skipped_triangles: usize,
 }
 
 impl Input {
     /// Loads the scene at `path`, or takes the report's.
     pub fn load(path: Option<&Path>, options: &SceneOptions) -> Result<Self, String> {
+        let share_samples = options.share_samples.single()?;
+        Self::load_sharing(path, options, share_samples)
+    }
+
+    /// As [`Input::load`], but whether samples are shared is not what the options say.
+    pub fn load_sharing(
+        path: Option<&Path>,
+        options: &SceneOptions,
+        share_samples: bool,
+    ) -> Result<Self, String> {
         let (name, file) = load(path)?;
         let mut scene = file.scene;
         let (width, height) = options.size.unwrap_or((file.image.width, file.image.height));
         scene.render.antialiasing = options.antialiasing.unwrap_or(scene.render.antialiasing);
         scene.render.sampling = options.sampling.into();
+        scene.render.adaptive = options.adaptive == SwitchOption::On;
         let demand = Demand::of(&scene);
         let (precision, reason) = match options.precision {
             PrecisionOption::Auto => (demand.precision(), demand.to_string()),
@@ -45,15 +58,25 @@ impl Input {
             PrecisionOption::F64 => (Precision::F64, "as asked for".to_owned()),
         };
         let arithmetic = Arithmetic { formulas: options.formulas.into(), precision };
-        let share_samples = options.share_samples == SwitchOption::On;
         let (lanes, search) = (options.lanes.into(), options.search.into());
         let execution = Execution { arithmetic, lanes, share_samples, search };
-        Ok(Self { name, scene, width, height, execution, reason })
+        let skipped_triangles = file.skipped_triangles;
+        Ok(Self { name, scene, width, height, execution, reason, skipped_triangles })
     }
 
     /// The work of rendering the scene at this size.
     pub fn work(&self, width: u32, height: u32) -> Result<Box<dyn Work + Send>, String> {
-        tracer(&self.scene, width, height, self.execution).map_err(|e| format!("{}: {e}", self.name))
+        self.work_by(self.execution, width, height)
+    }
+
+    /// The same, executed in another way.
+    pub fn work_by(
+        &self,
+        execution: Execution,
+        width: u32,
+        height: u32,
+    ) -> Result<Box<dyn Work + Send>, String> {
+        tracer(&self.scene, width, height, execution).map_err(|e| format!("{}: {e}", self.name))
     }
 
     /// A black picture of the size asked for.
@@ -61,12 +84,25 @@ impl Input {
         Image::new(self.width, self.height).map_err(|e: ImageError| e.to_string())
     }
 
-    /// What is rendered, and how: two lines.
+    /// What is rendered, and how: two lines, and another one if something of it is left out.
     pub fn describe(&self) -> String {
         let Self { name, width, height, .. } = self;
         let RenderSettings { antialiasing, sampling, .. } = self.scene.render;
-        let arithmetic = self.arithmetic_line();
-        format!("{name}, {width} x {height} pixels, antialiasing {antialiasing} by {sampling}\n{arithmetic}")
+        let picture = format!("{name}, {width} x {height} pixels, antialiasing {antialiasing} by {sampling}");
+        [Some(picture), Some(self.arithmetic_line()), self.skipped_line()]
+            .into_iter()
+            .flatten()
+            .collect::<Vec<_>>()
+            .join("\n")
+    }
+
+    /// What of the scene is left out, if anything.
+    pub fn skipped_line(&self) -> Option<String> {
+        match self.skipped_triangles {
+            0 => None,
+            1 => Some("1 triangle without area left out".to_owned()),
+            several => Some(format!("{several} triangles without area left out")),
+        }
     }
 
     /// Formulas, precision and its reason.

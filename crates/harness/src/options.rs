@@ -37,7 +37,10 @@ pub struct SceneOptions {
     pub lanes: LanesOption,
     /// Whether lattice points that neighbouring pixels of a tile need are traced once
     #[arg(long, value_enum, default_value_t)]
-    pub share_samples: SwitchOption,
+    pub share_samples: SharingOption,
+    /// Whether lattice points are interpolated where the pixels around them look alike: faster, another picture
+    #[arg(long, value_enum, default_value_t)]
+    pub adaptive: SwitchOption,
     /// Which primitives a ray tries
     #[arg(long, value_enum, default_value_t)]
     pub search: SearchOption,
@@ -92,13 +95,25 @@ pub enum LanesOption {
     Wide512,
 }
 
-/// What may be left out for comparison.
+/// Whether samples are shared.
+#[derive(Clone, Copy, Default, ValueEnum)]
+pub enum SharingOption {
+    /// Within a tile
+    #[default]
+    On,
+    /// Each pixel traces its own
+    Off,
+    /// One beside the other: `compare` only
+    Both,
+}
+
+/// What is not done unless asked for.
 #[derive(Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
 pub enum SwitchOption {
     /// With it
-    #[default]
     On,
     /// Without it
+    #[default]
     Off,
 }
 
@@ -145,6 +160,20 @@ impl From<SearchOption> for Search {
         match option {
             SearchOption::Auto => Self::Auto,
             SearchOption::Exhaustive => Self::Exhaustive,
+        }
+    }
+}
+
+impl SharingOption {
+    /// For what has room for a single way.
+    pub fn single(self) -> Result<bool, String> {
+        match self {
+            Self::On => Ok(true),
+            Self::Off => Ok(false),
+            Self::Both => {
+                Err("--share-samples both: only `compare` sets both beside each other, use on or off"
+                    .to_owned())
+            }
         }
     }
 }

@@ -126,6 +126,134 @@ fn compare_writes_what_other_programs_read() {
     assert_eq!(csv.lines().count(), 1 + results.len());
 }
 
+/// What is traced where samples are shared: of `sides` a lattice of density `density` and what lies around it.
+fn lattice_points(density: u64, sides: &[(u64, u64)]) -> u64 {
+    let points = |side: u64| density * (side + 1) + 1;
+    sides.iter().map(|&(width, height)| points(width) * points(height)).sum()
+}
+
+/// The rays of a strategy's results, all of them the same, and how many of them are redundant.
+fn rays(object: &Value, strategy: &str) -> (u64, u64) {
+    let results = object["results"].as_array().expect("a list").iter();
+    let mut found: Vec<(u64, u64)> = results
+        .filter(|result| result["strategy"] == strategy)
+        .map(|result| ["primary_rays", "redundant_rays"].map(|key| result[key].as_u64().expect("a number")))
+        .map(<(u64, u64)>::from)
+        .collect();
+    found.dedup();
+    assert_eq!(found.len(), 1, "{strategy}: {found:?}");
+    found[0]
+}
+
+#[test]
+fn compare_counts_the_rays_of_the_tiles_that_each_strategy_cuts() {
+    let folder = folder();
+    let run = |options: &str| {
+        let arguments = format!("compare --size 24x16 --threads 2 --tile 10 {options} --json a.json");
+        let table = rayweave(folder.path(), &arguments).expect_success();
+        (table, json(&folder.path().join("a.json")))
+    };
+
+    let (table, object) = run("--antialiasing 2");
+    let needed = lattice_points(2, &[(24, 16)]);
+    // Two rows of tiles, 10 and 6 pixels high, each of 10, 10 and 4 pixels.
+    let tiles = [(10, 10), (10, 10), (4, 10), (10, 6), (10, 6), (4, 6)];
+    let by_tiles = (lattice_points(2, &tiles), lattice_points(2, &tiles) - needed);
+    assert_eq!(rays(&object, "sequential"), by_tiles);
+    assert_eq!(rays(&object, "tile-queue"), by_tiles);
+    let by_pixels = (24 * 16 * 25, 24 * 16 * 25 - needed);
+    assert_eq!(rays(&object, "rayon-pixels"), by_pixels);
+    assert_eq!(rays(&object, "mutex-image"), by_pixels);
+    assert!(table.contains("  5.6/px +21.3 %  ") && table.contains("  25.0/px +438 %  "), "{table}");
+
+    for (options, a_pixel) in [
+        ("--antialiasing 2 --share-samples off", 25),
+        ("--antialiasing 2 --sampling importance", 13),
+        ("--antialiasing 0", 1),
+    ] {
+        let (_, object) = run(options);
+        for strategy in rayweave_registry::STRATEGIES {
+            assert_eq!(rays(&object, strategy.name()), (24 * 16 * a_pixel, 0), "{options}");
+        }
+    }
+}
+
+#[test]
+fn compare_says_how_the_picture_is_computed() {
+    let folder = folder();
+    let run = |options: &str| {
+        let arguments =
+            format!("compare --size 8x8 --threads 1 --strategy sequential {options} --json a.json");
+        let table = rayweave(folder.path(), &arguments).expect_success();
+        let object = json(&folder.path().join("a.json"));
+        let line = table.lines().find(|line| line.starts_with("computed: ")).expect("the line").to_owned();
+        (line, ["lanes", "share_samples", "search"].map(|key| object[key].clone()))
+    };
+    let (line, keys) = run("--antialiasing 1 --lanes 8 --precision f32");
+    assert_eq!(line, "computed: 8 rays side by side, samples shared, search auto");
+    assert_eq!(keys, [Value::from(8), Value::from(true), Value::from("auto")]);
+    let (line, keys) =
+        run("--antialiasing 1 --lanes 8 --precision f64 --share-samples off --search exhaustive");
+    assert_eq!(line, "computed: 4 rays side by side, samples not shared, search exhaustive");
+    assert_eq!(keys, [Value::from(4), Value::from(false), Value::from("exhaustive")]);
+}
+
+#[test]
+fn compare_sets_shared_samples_beside_their_own() {
+    let folder = folder();
+    let arguments =
+        "compare --size 24x16 --antialiasing 2 --threads 2 --share-samples both --json a.json --csv a.csv";
+    let text = rayweave(folder.path(), arguments).expect_success();
+    let place = |part: &str| text.find(part).unwrap_or_else(|| panic!("{part}: {text}"));
+    let (shared, unshared) = (place("samples shared"), place("samples not shared"));
+    assert!(shared < unshared && unshared < place("sharing: without it sequential takes "), "{text}");
+    assert_eq!(text.matches("(control)").count(), 2, "{text}");
+
+    let object = json(&folder.path().join("a.json"));
+    let other = &object["unshared"];
+    assert_eq!((&object["share_samples"], &other["share_samples"]), (&true.into(), &false.into()));
+    assert_eq!((&object["schema"], &other["schema"]), (&1.into(), &1.into()));
+    // The same picture, in the same rounds.
+    assert_eq!((&object["digest"], &object["rounds"]), (&other["digest"], &other["rounds"]));
+    assert!(object["sharing_speedup"]["median"].as_f64().expect("a number") > 0.0);
+    assert_eq!(rays(other, "tile-queue"), (24 * 16 * 25, 0));
+    let tile = lattice_points(2, &[(24, 16)]);
+    assert_eq!(rays(&object, "tile-queue"), (tile, 0), "one tile is the whole picture");
+    let results = |object: &Value| object["results"].as_array().expect("a list").len();
+    assert_eq!(results(&object), 2 + rayweave_registry::STRATEGIES.len() - 1);
+    let csv = fs::read_to_string(folder.path().join("a.csv")).expect("the file");
+    assert_eq!(csv.lines().count(), 1 + results(&object) + results(other));
+}
+
+#[test]
+fn triangles_without_area_are_told() {
+    let folder = folder();
+    let text = "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\nup = [0, 1, 0]\nfocal_length = 1.0\n\
+                screen_width = 1.0\n[material.grey]\ncolor = [0.5, 0.5, 0.5]\n\
+                [[mesh]]\nfile = \"mesh.obj\"\nmaterial = \"grey\"\n";
+    fs::write(folder.path().join("mesh.toml"), text).expect("written");
+    let run = |faces: &str| {
+        let mesh = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\n{faces}");
+        fs::write(folder.path().join("mesh.obj"), mesh).expect("written");
+        let small = "mesh.toml --size 4x4 --antialiasing 0";
+        let rendered = rayweave(folder.path(), &format!("render {small} -o a.ppm")).expect_success();
+        let compared =
+            rayweave(folder.path(), &format!("compare {small} --strategy sequential")).expect_success();
+        (rendered, compared)
+    };
+    for (faces, told) in [
+        ("f 1 2 3\n", None),
+        ("f 1 2 3\nf 1 2 4\n", Some("1 triangle without area left out")),
+        ("f 1 2 3\nf 1 2 4\nf 1 1 2\n", Some("2 triangles without area left out")),
+    ] {
+        let (rendered, compared) = run(faces);
+        for text in [rendered, compared] {
+            let line = text.lines().find(|line| line.contains("without area"));
+            assert_eq!(line, told, "{text}");
+        }
+    }
+}
+
 #[test]
 fn without_a_command_it_compares() {
     let folder = folder();
@@ -153,6 +281,9 @@ fn requests_that_cannot_be_met_are_refused_before_any_work() {
         ("compare --strategy sequential,nope", "nope"),
         ("render --precision f16", "f32"),
         ("render --lanes 3", "auto"),
+        ("render --share-samples maybe", "both"),
+        ("render --share-samples both", "only `compare`"),
+        ("check --share-samples both --json a.json", "only `compare`"),
         ("render -o a.jpg", ".png, .ppm or .exr"),
         ("render -o a", ".png, .ppm or .exr"),
         ("render -o missing/a.png", "no folder missing"),

@@ -4,10 +4,12 @@
 //! * A speed-up is the median over the rounds of the ratio to the reference in the same round.
 //! * The reference is measured a second time as the control: its "speed-up" over itself is 1, and
 //!   what its interval says instead is the error of the whole table.
-//! * Before the rounds each row renders once without being timed, and is verified.
+//! * Before the rounds each row renders once without being timed, and is verified; its rays are counted then.
 //! * Preparing, poisoning the picture and verifying it lie outside of the timed span.
 //! * A row that fails, or gives another picture than the reference, is measured no further and gets
 //!   no figures; its samples so far stay. If it is the reference itself, no row gets figures.
+//! * Several works that give the same picture are measured [together](Protocol::run_together): their rows take
+//!   their turns in the same rounds, so times of one over times of another are ratios within a round too.
 //!
 //! The protocol has an [`Executor`] do the rendering and the timing, so its logic is tested without
 //! either; [`Stopwatch`](crate::stopwatch::Stopwatch) is the real one.
@@ -40,6 +42,15 @@ pub trait Executor {
     /// What the strategy says of its failure.
     fn render(&mut self, entry: &Entry<'_>) -> Result<Rendering, String>;
 
+    /// The same while what is traced is counted, if the executor knows how: its times are no sample.
+    ///
+    /// # Errors
+    ///
+    /// As [`Executor::render`].
+    fn warm_up(&mut self, entry: &Entry<'_>) -> Result<(Rendering, Option<Rays>), String> {
+        self.render(entry).map(|rendering| (rendering, None))
+    }
+
     /// Time since the executor was made.
     fn elapsed(&self) -> Duration;
 }
@@ -60,6 +71,16 @@ pub struct Sample {
     pub prepare_ns: u64,
     /// To render, in nanoseconds.
     pub render_ns: u64,
+}
+
+/// The primary rays of one rendering.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rays {
+    /// All that were traced.
+    pub primary: u64,
+    /// Those of them that one tile of the whole picture would have done without: neighbouring tiles each trace the
+    /// samples that they could share.
+    pub redundant: u64,
 }
 
 /// How far a comparison is; told before each rendering, outside of any timed span.
@@ -116,6 +137,8 @@ pub struct Row {
     pub digest: Option<Digest>,
     /// Why the strategy failed.
     pub error: Option<String>,
+    /// Traced in the warm-up; `None` where nobody counted, or the picture was wrong.
+    pub rays: Option<Rays>,
     /// Of the verified renderings, one a round, from the first round on.
     pub samples: Vec<Sample>,
     /// `None` for a row that failed or gave a wrong picture, and for all if the reference did.
@@ -158,6 +181,16 @@ impl Comparison {
         let control = self.rows.iter().find(|row| row.role == Role::Control)?;
         control.figures.map(|figures| figures.speedup)
     }
+
+    /// How many times as long as here the reference takes in `other`, measured [together](Protocol::run_together)
+    /// with this one. `None` unless both have figures.
+    #[must_use]
+    pub fn gain_over(&self, other: &Self) -> Option<Interval> {
+        let times = |comparison: &Self| {
+            comparison.rows.first().filter(|row| row.figures.is_some()).map(Row::render_ns)
+        };
+        ratio_interval(&times(other)?, &times(self)?)
+    }
 }
 
 impl Row {
@@ -179,12 +212,26 @@ impl Row {
             identical: true,
             digest: None,
             error: None,
+            rays: None,
             samples: Vec::new(),
             figures: None,
         }
     }
 
-    /// Takes note of a rendering, and gives its times if they may be used.
+    /// Takes note of a rendering that is no sample.
+    fn warm_up(&mut self, result: Result<(Rendering, Option<Rays>), String>, expected: Digest) {
+        let rays = result.as_ref().ok().and_then(|(_, rays)| *rays);
+        let sample = self.verify(result.map(|(rendering, _)| rendering), expected);
+        self.rays = rays.filter(|_| sample.is_some());
+    }
+
+    /// Takes note of a rendering that is a sample if its picture is right.
+    fn measure(&mut self, result: Result<Rendering, String>, expected: Digest) {
+        let sample = self.verify(result, expected);
+        self.samples.extend(sample);
+    }
+
+    /// Takes note of a rendering's picture, and gives its times if they may be used.
     fn verify(&mut self, result: Result<Rendering, String>, expected: Digest) -> Option<Sample> {
         match result {
             Ok(Rendering { sample, digest }) => {
@@ -232,24 +279,47 @@ impl Protocol {
         reference: &dyn Strategy,
         entries: &[Entry<'_>],
         executor: &mut dyn Executor,
-        mut progress: impl FnMut(Progress),
+        progress: impl FnMut(Progress),
     ) -> Result<Comparison, CompareError> {
+        // One executor, one comparison.
+        Ok(self.run_together(reference, entries, &mut [executor], progress)?.swap_remove(0))
+    }
+
+    /// A comparison for each executor, as by [`Protocol::run`] but measured in the same rounds. Each renders a work
+    /// of its own, and all have to give the picture that the first gives with `reference`.
+    ///
+    /// # Errors
+    ///
+    /// There is no reference picture.
+    pub fn run_together(
+        &self,
+        reference: &dyn Strategy,
+        entries: &[Entry<'_>],
+        executors: &mut [&mut dyn Executor],
+        mut progress: impl FnMut(Progress),
+    ) -> Result<Vec<Comparison>, CompareError> {
+        let Some(first) = executors.first_mut() else { return Ok(Vec::new()) };
         let base = Entry { strategy: reference, threads: NonZeroUsize::MIN };
         let contenders = entries.iter().filter(|entry| entry.strategy.name() != reference.name());
         let entries: Vec<Entry<'_>> = [base, base].into_iter().chain(contenders.copied()).collect();
-        let roles = [Role::Reference, Role::Control].into_iter().chain(std::iter::repeat(Role::Contender));
-        let mut rows: Vec<Row> =
-            entries.iter().zip(roles).map(|(entry, role)| Row::new(entry, role)).collect();
+        let roles = || [Role::Reference, Role::Control].into_iter().chain(std::iter::repeat(Role::Contender));
+        let new_rows = || entries.iter().zip(roles()).map(|(entry, role)| Row::new(entry, role)).collect();
 
-        let digest = executor.render(&base).map_err(CompareError::Reference)?.digest;
-        let mut schedule = self.schedule(rows.len());
-        while let Some(turn) = schedule.next(executor.elapsed()) {
+        let digest = first.render(&base).map_err(CompareError::Reference)?.digest;
+        let mut tables: Vec<Vec<Row>> = executors.iter().map(|_| new_rows()).collect();
+        let mut schedule = self.schedule(tables.len() * entries.len());
+        let mut running = vec![true; tables.len()];
+        while let Some(turn) = schedule.next(executors[0].elapsed()) {
             // Without its reference a round says nothing.
-            if turn.first && !rows[0].holds() {
+            if turn.first {
+                running = tables.iter().map(|rows| rows[0].holds()).collect();
+            }
+            if !running.contains(&true) {
                 break;
             }
-            let (row, entry) = (&mut rows[turn.entry], &entries[turn.entry]);
-            if !row.holds() {
+            let (table, entry) = (turn.entry / entries.len(), turn.entry % entries.len());
+            let (row, entry) = (&mut tables[table][entry], &entries[entry]);
+            if !running[table] || !row.holds() {
                 continue;
             }
             progress(Progress {
@@ -258,16 +328,24 @@ impl Protocol {
                 rounds: turn.round.unwrap_or(0),
                 fraction: turn.fraction,
             });
-            let sample = row.verify(executor.render(entry), digest);
-            row.samples.extend(sample.filter(|_| turn.round.is_some()));
-        }
-
-        if rows[0].holds() {
-            let reference = rows[0].render_ns();
-            for row in rows.iter_mut().filter(|row| row.holds()) {
-                row.figures = row.figures(&reference);
+            match turn.round {
+                None => row.warm_up(executors[table].warm_up(entry), digest),
+                Some(_) => row.measure(executors[table].render(entry), digest),
             }
         }
-        Ok(Comparison { rows, digest, rounds: schedule.rounds(), seed: self.seed })
+
+        let (rounds, seed) = (schedule.rounds(), self.seed);
+        let comparison = |rows| Comparison { rows: with_figures(rows), digest, rounds, seed };
+        Ok(tables.into_iter().map(comparison).collect())
     }
+}
+
+fn with_figures(mut rows: Vec<Row>) -> Vec<Row> {
+    if rows[0].holds() {
+        let reference = rows[0].render_ns();
+        for row in rows.iter_mut().filter(|row| row.holds()) {
+            row.figures = row.figures(&reference);
+        }
+    }
+    rows
 }

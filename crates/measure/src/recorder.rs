@@ -1,7 +1,8 @@
-//! Who computed what: a work around a work.
+//! Who computed what, and how much: a work around a work.
 
 use rayweave_core::{Area, Tile, Work};
 use std::fmt;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::thread::{self, ThreadId};
 
@@ -112,6 +113,44 @@ impl Record {
     }
 }
 
+/// What a tile costs, by its area.
+pub type Cost<'a> = dyn Fn(Area) -> u64 + Sync + 'a;
+
+/// Adds up what the tiles cost that the work inside completes: of any number of tiles a single sum. An addition for
+/// each tile is little, but more than nothing: not for timed runs.
+pub struct Tally<'a> {
+    work: &'a dyn Work,
+    cost: &'a Cost<'a>,
+    sum: AtomicU64,
+}
+
+impl<'a> Tally<'a> {
+    /// Adds up what is rendered of `work`.
+    #[must_use]
+    pub fn new(work: &'a dyn Work, cost: &'a Cost<'a>) -> Self {
+        Self { work, cost, sum: AtomicU64::new(0) }
+    }
+
+    /// The sum.
+    #[must_use]
+    pub fn finish(self) -> u64 {
+        self.sum.into_inner()
+    }
+}
+
+impl Work for Tally<'_> {
+    fn render(&self, tile: &mut Tile<'_>) {
+        self.work.render(tile);
+        self.sum.fetch_add((self.cost)(tile.area()), Ordering::Relaxed);
+    }
+}
+
+impl fmt::Debug for Tally<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Tally").field("sum", &self.sum).finish_non_exhaustive()
+    }
+}
+
 impl fmt::Debug for Recorder<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Recorder").field("log", &self.log).finish_non_exhaustive()
@@ -164,5 +203,20 @@ mod tests {
         let last = record.of_pixel(1, 0).pop().expect("computed");
         assert_eq!(last.to_string(), "tile 2x1 at (1, 0) by thread 1 (\"second\")");
         assert_eq!(record.of_pixel(0, 1), []);
+    }
+
+    /// Catches a tile that is not counted, or counted by something other than its own area.
+    #[test]
+    fn costs_of_all_threads_add_up() {
+        let cost = |area: Area| u64::from(100 * area.x + 10 * area.y + area.width);
+        let tally = Tally::new(&Black, &cost);
+        tally.render(&mut Tile::pixel(3, 2, &mut [1.0; 3]));
+        thread::scope(|scope| {
+            for y in 0..2 {
+                let tally = &tally;
+                scope.spawn(move || tally.render(&mut Tile::row(1, y, &mut [[1.0; 3]; 5])));
+            }
+        });
+        assert_eq!(tally.finish(), 321 + 105 + 115);
     }
 }

@@ -1,10 +1,11 @@
 //! Renders for real and takes the time.
 
 use crate::attempt::attempt;
-use crate::compare::{Entry, Executor, Rendering, Sample};
+use crate::compare::{Entry, Executor, Rays, Rendering, Sample};
 use crate::poison;
+use crate::recorder::{Cost, Tally};
 use rayweave_core::image::ImageError;
-use rayweave_core::{Image, Plan, Work};
+use rayweave_core::{Area, Image, Plan, Work};
 use std::num::NonZeroU32;
 use std::time::{Duration, Instant};
 
@@ -17,6 +18,8 @@ pub struct Stopwatch<'a> {
     /// One for all renderings: none of them pays for touching fresh memory.
     image: Image,
     begin: Instant,
+    /// The primary rays of a tile.
+    rays: Option<&'a Cost<'a>>,
 }
 
 impl<'a> Stopwatch<'a> {
@@ -26,7 +29,14 @@ impl<'a> Stopwatch<'a> {
     ///
     /// There is no such picture.
     pub fn new(work: &'a dyn Work, width: u32, height: u32, tile: NonZeroU32) -> Result<Self, ImageError> {
-        Ok(Self { work, tile, image: Image::new(width, height)?, begin: Instant::now() })
+        Ok(Self { work, tile, image: Image::new(width, height)?, begin: Instant::now(), rays: None })
+    }
+
+    /// Counts the primary rays of the warm-up, by those of each tile that a strategy cuts; the timed renderings stay
+    /// as they are. Of the whole picture as one tile `rays` tells how many are needed.
+    #[must_use]
+    pub fn counting(self, rays: &'a Cost<'a>) -> Self {
+        Self { rays: Some(rays), ..self }
     }
 
     /// The latest picture.
@@ -34,10 +44,8 @@ impl<'a> Stopwatch<'a> {
     pub fn into_picture(self) -> Image {
         self.image
     }
-}
 
-impl Executor for Stopwatch<'_> {
-    fn render(&mut self, entry: &Entry<'_>) -> Result<Rendering, String> {
+    fn render_work(&mut self, work: &dyn Work, entry: &Entry<'_>) -> Result<Rendering, String> {
         let plan = Plan { threads: entry.threads, tile: self.tile };
         let begin = Instant::now();
         let mut renderer = attempt(|| entry.strategy.prepare(plan))?;
@@ -45,10 +53,25 @@ impl Executor for Stopwatch<'_> {
 
         poison::fill(&mut self.image);
         let begin = Instant::now();
-        let result = attempt(|| renderer.render(self.work, &mut self.image));
+        let result = attempt(|| renderer.render(work, &mut self.image));
         let render_ns = nanoseconds(begin.elapsed());
         result?;
         Ok(Rendering { sample: Sample { prepare_ns, render_ns }, digest: self.image.digest() })
+    }
+}
+
+impl Executor for Stopwatch<'_> {
+    fn render(&mut self, entry: &Entry<'_>) -> Result<Rendering, String> {
+        self.render_work(self.work, entry)
+    }
+
+    fn warm_up(&mut self, entry: &Entry<'_>) -> Result<(Rendering, Option<Rays>), String> {
+        let Some(rays) = self.rays else { return Ok((self.render(entry)?, None)) };
+        let tally = Tally::new(self.work, rays);
+        let rendering = self.render_work(&tally, entry)?;
+        let primary = tally.finish();
+        let needed = rays(Area { x: 0, y: 0, width: self.image.width(), height: self.image.height() });
+        Ok((rendering, Some(Rays { primary, redundant: primary.saturating_sub(needed) })))
     }
 
     fn elapsed(&self) -> Duration {
@@ -113,6 +136,59 @@ mod tests {
             image.tiles(NonZeroU32::MIN).iter_mut().filter(|_| self.0).for_each(|tile| work.render(tile));
             Ok(())
         }
+    }
+
+    /// Renders by tiles of 2 pixels a side, whatever the plan says.
+    struct ByTwos;
+
+    impl Strategy for ByTwos {
+        fn name(&self) -> &'static str {
+            "by-twos"
+        }
+
+        fn summary(&self) -> &'static str {
+            "2 x 2 pixels at a time"
+        }
+
+        fn threads_start(&self) -> ThreadsStart {
+            ThreadsStart::Never
+        }
+
+        fn prepare(&self, _: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
+            Ok(Box::new(Self))
+        }
+    }
+
+    impl Renderer for ByTwos {
+        fn render(&mut self, work: &dyn Work, image: &mut Image) -> Result<(), StrategyError> {
+            let size = NonZeroU32::new(2).expect("not 0");
+            image.tiles(size).iter_mut().for_each(|tile| work.render(tile));
+            Ok(())
+        }
+    }
+
+    /// Catches a count by the plan's tiles instead of those that were cut, one in the timed renderings, and a
+    /// need other than the whole picture's.
+    #[test]
+    fn the_warm_up_counts_the_tiles_that_were_cut() {
+        let asked = AtomicUsize::new(0);
+        let rays = |area: Area| {
+            asked.fetch_add(1, Ordering::Relaxed);
+            u64::from((area.width + 1) * (area.height + 1))
+        };
+        let plan = NonZeroU32::new(100).expect("not 0");
+        let entry = Entry { strategy: &ByTwos, threads: NonZeroUsize::MIN };
+        let mut stopwatch = Stopwatch::new(&Grey, 5, 4, plan).expect("a picture").counting(&rays);
+        // Four tiles of 2 x 2 and two of 1 x 2; the whole picture is 5 x 4.
+        let (primary, needed) = (4 * 9 + 2 * 6, 6 * 5);
+        let (rendering, counted) = stopwatch.warm_up(&entry).expect("rendered");
+        assert_eq!(counted, Some(Rays { primary, redundant: primary - needed }));
+        let before = asked.load(Ordering::Relaxed);
+        assert_eq!(stopwatch.render(&entry).map(|again| again.digest), Ok(rendering.digest));
+        assert_eq!(asked.load(Ordering::Relaxed), before, "counted in a timed rendering");
+
+        let mut stopwatch = Stopwatch::new(&Grey, 5, 4, plan).expect("a picture");
+        assert_eq!(stopwatch.warm_up(&entry).map(|(_, counted)| counted), Ok(None));
     }
 
     #[test]

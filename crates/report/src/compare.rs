@@ -6,10 +6,10 @@ mod table;
 #[cfg(test)]
 mod tests;
 
-use rayweave_core::{Formulas, Sampling, ThreadsStart};
-use rayweave_measure::{Comparison, Machine, Row};
+use rayweave_core::{Formulas, Sampling, Search, ThreadsStart};
+use rayweave_measure::{Comparison, Interval, Machine, Row};
 
-/// What was rendered.
+/// What was rendered, and how.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Subject {
     /// The scene's name.
@@ -28,6 +28,12 @@ pub struct Subject {
     pub formulas: Formulas,
     /// Of the numbers that the tracer computes with: "f32" or "f64".
     pub precision: String,
+    /// Rays that are followed side by side.
+    pub lanes: usize,
+    /// Whether samples that neighbouring pixels of a tile have in common are traced once.
+    pub share_samples: bool,
+    /// Which primitives a ray tries.
+    pub search: Search,
 }
 
 /// A comparison with everything that is needed to read it.
@@ -56,6 +62,9 @@ impl Report<'_> {
     ///   `speedup` with `median`, `low` and `high`.
     ///
     /// Where a row has no figures, because it failed or gave a wrong picture, they are null.
+    ///
+    /// Of how the picture was computed `lanes`, `share_samples` and `search` tell; of each result `primary_rays`
+    /// those that were traced, and `redundant_rays` how many of them a single tile would have done without.
     #[must_use]
     pub fn json(&self) -> String {
         json::text(self)
@@ -65,6 +74,52 @@ impl Report<'_> {
     #[must_use]
     pub fn csv(&self) -> String {
         csv::text(self)
+    }
+}
+
+/// The same strategies with samples shared and without, [measured together].
+///
+/// [measured together]: rayweave_measure::Protocol::run_together
+#[derive(Clone, Copy, Debug)]
+pub struct BothReport<'a> {
+    /// With samples shared.
+    pub shared: Report<'a>,
+    /// Without; on the same machine.
+    pub unshared: Report<'a>,
+}
+
+impl BothReport<'_> {
+    /// As [`Report::table`], first with samples shared and then without, and below both what the reference gains.
+    #[must_use]
+    pub fn table(&self) -> String {
+        table::both(self)
+    }
+
+    /// The object of [`Report::json`] with samples shared, and in it two more keys: `unshared` is such an object
+    /// too, without, and `sharing_speedup` (as `speedup`) the reference's time without over its time with, or
+    /// null.
+    #[must_use]
+    pub fn json(&self) -> String {
+        json::both(self)
+    }
+
+    /// The lines of [`Report::csv`] with samples shared, then those without: `share_samples` tells them apart.
+    #[must_use]
+    pub fn csv(&self) -> String {
+        csv::both(self)
+    }
+
+    /// The time of the reference without samples shared over its time with, in the same round.
+    fn gain(&self) -> Option<Interval> {
+        self.shared.comparison.gain_over(self.unshared.comparison)
+    }
+}
+
+/// The word for how a ray's primitives are chosen.
+fn search(search: Search) -> &'static str {
+    match search {
+        Search::Auto => "auto",
+        Search::Exhaustive => "exhaustive",
     }
 }
 

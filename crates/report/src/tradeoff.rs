@@ -63,5 +63,9 @@ impl Report<'_> {
 
 /// Where a setting's samples lie; nothing to say of one ray a pixel.
 fn sampling_name(setting: &Setting) -> String {
-    if setting.antialiasing == 0 { "-".to_owned() } else { setting.sampling.to_string() }
+    match setting.antialiasing {
+        0 => "-".to_owned(),
+        _ if setting.adaptive => "adaptive".to_owned(),
+        _ => setting.sampling.to_string(),
+    }
 }

@@ -89,6 +89,7 @@ pub(crate) fn render(fields: &Fields) -> Result<RenderSettings, Problem> {
         max_reflections: fields.optional("max_reflections", default.max_reflections)?,
         antialiasing: fields.optional("antialiasing", default.antialiasing)?,
         sampling: default.sampling,
+        adaptive: default.adaptive,
     };
     fields.checked(settings, RenderSettings::check)
 }

@@ -46,7 +46,13 @@ pub fn reference_rays_per_pixel() -> u32 {
 }
 
 fn setting(antialiasing: u32, max_reflections: u32) -> Setting {
-    Setting { arithmetic: EXACT, sampling: Sampling::Importance, antialiasing, max_reflections }
+    Setting {
+        arithmetic: EXACT,
+        sampling: Sampling::Importance,
+        adaptive: false,
+        antialiasing,
+        max_reflections,
+    }
 }
 
 fn mean(a: &Image, b: &Image) -> Image {

@@ -11,6 +11,8 @@ pub struct Setting {
     pub arithmetic: Arithmetic,
     /// Where samples lie; of no consequence for one ray a pixel.
     pub sampling: Sampling,
+    /// Whether lattice points are interpolated where pixels look alike.
+    pub adaptive: bool,
     /// Density `s`, as in [`rayweave_core::scene::RenderSettings::antialiasing`].
     pub antialiasing: u32,
     /// Mirror bounces after the primary ray.
@@ -38,6 +40,7 @@ impl Setting {
         Self {
             arithmetic: Arithmetic { formulas: Formulas::Textbook, precision: Precision::F32 },
             sampling: Sampling::Lattice,
+            adaptive: false,
             antialiasing: 2,
             max_reflections,
         }
@@ -48,14 +51,20 @@ impl Setting {
     #[must_use]
     pub fn all(scene: &Scene) -> Vec<Self> {
         let mut all = Vec::new();
-        for sampling in [Sampling::Lattice, Sampling::Importance] {
+        let patterns = [(Sampling::Lattice, false), (Sampling::Importance, false), (Sampling::Lattice, true)];
+        for (sampling, adaptive) in patterns {
             for antialiasing in DENSITIES {
-                // One ray a pixel is the same in both.
-                if antialiasing == 0 && sampling == Sampling::Importance {
+                // One ray a pixel is the same in all; on a lattice of one step a pixel all points are centres.
+                let same = sampling == Sampling::Importance || adaptive;
+                if (antialiasing == 0 && same) || (antialiasing == 1 && adaptive) {
                     continue;
                 }
-                for max_reflections in depths(scene) {
-                    let setting = |arithmetic| Self { arithmetic, sampling, antialiasing, max_reflections };
+                // Adaptive samples of less depth would only repeat what the others tell of depth.
+                let depths = depths(scene);
+                let depths = if adaptive { &depths[..1] } else { &depths[..] };
+                for &max_reflections in depths {
+                    let setting =
+                        |arithmetic| Self { arithmetic, sampling, adaptive, antialiasing, max_reflections };
                     all.extend(ARITHMETICS.map(setting));
                 }
             }
@@ -82,6 +91,7 @@ impl Setting {
     ) -> Result<Box<dyn Work + Send>, SceneError> {
         let mut scene = scene.clone();
         scene.render.sampling = self.sampling;
+        scene.render.adaptive = self.adaptive;
         scene.render.antialiasing = self.antialiasing;
         scene.render.max_reflections = self.max_reflections;
         tracer(&scene, width, height, self.arithmetic)
@@ -102,6 +112,7 @@ impl fmt::Display for Setting {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let rays = match (self.rays_per_pixel(), self.sampling) {
             (1, _) => "1 ray".to_owned(),
+            (rays, Sampling::Lattice) if self.adaptive => format!("up to {rays} adaptive rays"),
             (rays, Sampling::Lattice) => format!("{rays} lattice rays"),
             (rays, Sampling::Importance) => format!("{rays} importance rays"),
         };

@@ -1,17 +1,19 @@
 //! `rayweave compare`, and `rayweave` alone: the table.
 
 use crate::input::Input;
-use crate::options::{SceneOptions, TileOption, all_threads, distinct, parse_strategy, parse_threads};
+use crate::options::{
+    SceneOptions, SharingOption, TileOption, all_threads, distinct, parse_strategy, parse_threads,
+};
 use crate::output::{PendingFile, distinct_files};
 use crate::{Outcome, print, progress};
 use clap::Args;
-use rayweave_core::Strategy;
+use rayweave_core::{Area, Arithmetic, Execution, Strategy, Work, primary_rays};
 use rayweave_measure::Protocol;
-use rayweave_measure::compare::{Comparison, Entry};
+use rayweave_measure::compare::{Comparison, Entry, Executor};
 use rayweave_measure::machine::Machine;
 use rayweave_measure::stopwatch::Stopwatch;
 use rayweave_registry::STRATEGIES;
-use rayweave_report::compare::{Report, Subject};
+use rayweave_report::compare::{BothReport, Report, Subject};
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::path::{Path, PathBuf};
 
@@ -47,32 +49,66 @@ pub fn run(scene: Option<&Path>, options: &Options) -> Result<Outcome, String> {
     distinct_files(&[&scene.map(Path::to_owned), &options.json, &options.csv])?;
     let json = options.json.as_deref().map(PendingFile::create).transpose()?;
     let csv = options.csv.as_deref().map(PendingFile::create).transpose()?;
-    let input = Input::load(scene, &options.scene_options)?;
+    let sharing = options.scene_options.share_samples;
+    let ways: &[bool] = match sharing {
+        SharingOption::On => &[true],
+        SharingOption::Off => &[false],
+        SharingOption::Both => &[true, false],
+    };
+    let input = Input::load_sharing(scene, &options.scene_options, ways[0])?;
     let tile = options.tile.of(input.width, input.height)?;
-    let comparison = measure(&input, tile, options)?;
-    let subject = Subject {
+    let ways: Vec<Execution> =
+        ways.iter().map(|&share_samples| Execution { share_samples, ..input.execution }).collect();
+    let comparisons = measure(&input, &ways, tile, options)?;
+    let subjects: Vec<Subject> = ways.iter().map(|&way| subject(&input, way, tile)).collect();
+    let machine = Machine::here();
+    let reports: Vec<Report<'_>> = subjects
+        .iter()
+        .zip(&comparisons)
+        .map(|(subject, comparison)| Report { subject, comparison, machine: &machine })
+        .collect();
+    let [table, json_text, csv_text] = match reports[..] {
+        [shared, unshared] => {
+            let both = BothReport { shared, unshared };
+            [both.table(), both.json(), both.csv()]
+        }
+        _ => [reports[0].table(), reports[0].json(), reports[0].csv()],
+    };
+    let skipped = input.skipped_line().map(|line| line + "\n").unwrap_or_default();
+    print(&format!("{table}\n{}\n{skipped}", input.arithmetic_line()))?;
+    json.map_or(Ok(()), |file| file.finish(json_text.as_bytes()))?;
+    csv.map_or(Ok(()), |file| file.finish(csv_text.as_bytes()))?;
+    Ok(if comparisons.iter().all(Comparison::holds) { Outcome::Held } else { Outcome::Failed })
+}
+
+fn subject(input: &Input, execution: Execution, tile: NonZeroU32) -> Subject {
+    let Execution { arithmetic: Arithmetic { formulas, precision }, lanes, share_samples, search } =
+        execution;
+    Subject {
         scene: input.name.clone(),
         width: input.width,
         height: input.height,
         tile: tile.get(),
         antialiasing: input.scene.render.antialiasing,
         sampling: input.scene.render.sampling,
-        formulas: input.execution.arithmetic.formulas,
-        precision: input.execution.arithmetic.precision.to_string(),
-    };
-    let report = Report { subject: &subject, comparison: &comparison, machine: &Machine::here() };
-    print(&format!("{}\n{}\n", report.table(), input.arithmetic_line()))?;
-    json.map_or(Ok(()), |file| file.finish(report.json().as_bytes()))?;
-    csv.map_or(Ok(()), |file| file.finish(report.csv().as_bytes()))?;
-    Ok(if comparison.holds() { Outcome::Held } else { Outcome::Failed })
+        formulas,
+        precision: precision.to_string(),
+        lanes: lanes.count(precision),
+        share_samples,
+        search,
+    }
 }
 
 /// Steps of the progress bar.
 const STEPS: f64 = 1000.0;
 
-fn measure(input: &Input, tile: NonZeroU32, options: &Options) -> Result<Comparison, String> {
-    let work = input.work(input.width, input.height)?;
-    let mut stopwatch = Stopwatch::new(&*work, input.width, input.height, tile).map_err(|e| e.to_string())?;
+/// A comparison for each way to compute the picture, measured in the same rounds.
+fn measure(
+    input: &Input,
+    ways: &[Execution],
+    tile: NonZeroU32,
+    options: &Options,
+) -> Result<Vec<Comparison>, String> {
     let strategies =
         distinct(if options.strategy.is_empty() { STRATEGIES } else { &options.strategy }, |s| s.name());
     let threads =
@@ -80,13 +116,32 @@ fn measure(input: &Input, tile: NonZeroU32, options: &Options) -> Result<Compari
     let pairs = strategies.iter().flat_map(|&strategy| threads.iter().map(move |&n| (strategy, n)));
     let entries: Vec<Entry<'_>> = pairs.map(|(strategy, threads)| Entry { strategy, threads }).collect();
 
+    let (width, height) = (input.width, input.height);
+    let works = ways.iter().map(|&way| input.work_by(way, width, height));
+    let works = works.collect::<Result<Vec<Box<dyn Work + Send>>, _>>()?;
+    let rays = |way: &Execution| {
+        let share_samples = way.share_samples;
+        move |tile: Area| primary_rays(tile.width, tile.height, &input.scene.render, share_samples)
+    };
+    let rays: Vec<_> = ways.iter().map(rays).collect();
+    let stopwatches = works.iter().zip(&rays).map(|(work, rays)| {
+        let stopwatch = Stopwatch::new(&**work, width, height, tile).map_err(|e| e.to_string())?;
+        Ok(stopwatch.counting(rays))
+    });
+    let mut stopwatches = stopwatches.collect::<Result<Vec<Stopwatch<'_>>, String>>()?;
+    let mut executors: Vec<&mut dyn Executor> =
+        stopwatches.iter_mut().map(|stopwatch| stopwatch as &mut dyn Executor).collect();
+
     let bar = progress::bar(STEPS as u64);
-    let comparison =
-        Protocol::default().run(rayweave_registry::reference(), &entries, &mut stopwatch, |progress| {
+    let protocol = Protocol::default();
+    // Each way gets the time that it would have had alone.
+    let protocol = Protocol { budget: protocol.budget * ways.len() as u32, ..protocol };
+    let comparisons =
+        protocol.run_together(rayweave_registry::reference(), &entries, &mut executors, |progress| {
             // Drawn here and nowhere else: between the timed spans.
             bar.set_message(format!("{}, threads: {}", progress.strategy, progress.threads));
             bar.set_position((progress.fraction * STEPS) as u64);
         });
     bar.finish_and_clear();
-    comparison.map_err(|e| e.to_string())
+    comparisons.map_err(|e| e.to_string())
 }

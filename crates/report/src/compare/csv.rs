@@ -1,6 +1,6 @@
 //! The comparison for spreadsheets: every line stands for itself.
 
-use super::{Report, threads_start};
+use super::{BothReport, Report, search, threads_start};
 use crate::csv;
 use rayweave_measure::compare::{Role, Row};
 use serde::Serialize;
@@ -35,10 +35,23 @@ struct Line<'a> {
     compiler: &'a str,
     profile: &'a str,
     commit: &'a str,
+    lanes: usize,
+    share_samples: bool,
+    search: &'a str,
+    primary_rays: Option<u64>,
+    redundant_rays: Option<u64>,
 }
 
 pub(super) fn text(report: &Report<'_>) -> String {
-    csv::text(report.comparison.rows.iter().map(|row| line(report, row)))
+    csv::text(lines(report))
+}
+
+pub(super) fn both(BothReport { shared, unshared }: &BothReport<'_>) -> String {
+    csv::text(lines(shared).chain(lines(unshared)))
+}
+
+fn lines<'a>(report: &Report<'a>) -> impl Iterator<Item = Line<'a>> {
+    report.comparison.rows.iter().map(|row| line(report, row))
 }
 
 fn line<'a>(report: &Report<'a>, row: &'a Row) -> Line<'a> {
@@ -74,5 +87,10 @@ fn line<'a>(report: &Report<'a>, row: &'a Row) -> Line<'a> {
         compiler: machine.compiler,
         profile: machine.profile,
         commit: machine.commit,
+        lanes: subject.lanes,
+        share_samples: subject.share_samples,
+        search: search(subject.search),
+        primary_rays: row.rays.map(|rays| rays.primary),
+        redundant_rays: row.rays.map(|rays| rays.redundant),
     }
 }

@@ -1,6 +1,6 @@
 //! The comparison for other programs.
 
-use super::{Report, threads_start};
+use super::{BothReport, Report, search, threads_start};
 use crate::json::{self, Ratio};
 use crate::machine::Facts;
 use rayweave_measure::compare::{Role, Row};
@@ -24,7 +24,19 @@ struct Object<'a> {
     seed: u64,
     digest: String,
     machine: Facts<'a>,
+    lanes: usize,
+    share_samples: bool,
+    search: &'a str,
     results: Vec<Result<'a>>,
+}
+
+/// The object with samples shared, and what else there is to say.
+#[derive(Serialize)]
+struct Both<'a> {
+    #[serde(flatten)]
+    shared: Object<'a>,
+    sharing_speedup: Option<Ratio>,
+    unshared: Object<'a>,
 }
 
 #[derive(Serialize)]
@@ -43,11 +55,25 @@ struct Result<'a> {
     prepare_ns: Option<u64>,
     prepare_samples_ns: Vec<u64>,
     error: Option<&'a str>,
+    primary_rays: Option<u64>,
+    redundant_rays: Option<u64>,
 }
 
 pub(super) fn text(report: &Report<'_>) -> String {
-    let Report { subject, comparison, machine } = report;
-    json::text(&Object {
+    json::text(&object(report))
+}
+
+pub(super) fn both(report: &BothReport<'_>) -> String {
+    json::text(&Both {
+        shared: object(&report.shared),
+        sharing_speedup: report.gain().map(Ratio::from),
+        unshared: object(&report.unshared),
+    })
+}
+
+fn object<'a>(report: &Report<'a>) -> Object<'a> {
+    let Report { subject, comparison, machine } = *report;
+    Object {
         schema: SCHEMA,
         scene: &subject.scene,
         width: subject.width,
@@ -61,8 +87,11 @@ pub(super) fn text(report: &Report<'_>) -> String {
         seed: comparison.seed,
         digest: comparison.digest.to_string(),
         machine: Facts::new(machine),
+        lanes: subject.lanes,
+        share_samples: subject.share_samples,
+        search: search(subject.search),
         results: comparison.rows.iter().map(result).collect(),
-    })
+    }
 }
 
 fn result(row: &Row) -> Result<'_> {
@@ -82,5 +111,7 @@ fn result(row: &Row) -> Result<'_> {
         prepare_ns: figures.map(|figures| figures.prepare_ns.round() as u64),
         prepare_samples_ns: row.samples.iter().map(|sample| sample.prepare_ns).collect(),
         error: row.error.as_deref(),
+        primary_rays: row.rays.map(|rays| rays.primary),
+        redundant_rays: row.rays.map(|rays| rays.redundant),
     }
 }

@@ -1,36 +1,66 @@
 //! The comparison for people.
 
-use super::Report;
+use super::{BothReport, Report, Subject, search};
 use crate::{machine, style};
-use rayweave_core::{Sampling, ThreadsStart};
-use rayweave_measure::compare::{Role, Row};
+use rayweave_core::{Formulas, Sampling, Search, ThreadsStart};
+use rayweave_measure::compare::{Rays, Role, Row};
 use rayweave_measure::{Comparison, Interval};
 
-const HEADER: [&str; 8] = [
+const HEADER: [&str; 9] = [
     "strategy",
     "threads",
     "median\nms",
     "speed-up\n[95 % interval]",
     "efficiency",
     "serial\nfraction",
+    "rays",
     "threads\nstart",
     "identical",
 ];
 
 /// The columns of numbers, which line up at their right.
-const NUMBERS: std::ops::RangeInclusive<usize> = 1..=5;
+const NUMBERS: std::ops::RangeInclusive<usize> = 1..=6;
 
 /// What a cell without a figure holds.
 const NONE: &str = "-";
 
 pub(super) fn text(report: &Report<'_>) -> String {
-    let Report { comparison, .. } = report;
-    let table = style::table(HEADER, comparison.rows.iter().map(cells), NUMBERS);
-    let mut lines = vec![heading(report), String::new(), table, String::new()];
-    lines.extend(comparison.rows.iter().filter_map(complaint));
-    lines.extend(notes(comparison));
+    let mut lines = measured(report);
+    lines.extend(legend(report.comparison));
+    lines.extend(control(report.comparison));
     lines.push(machine::text(report.machine));
     lines.join("\n")
+}
+
+pub(super) fn both(report: &BothReport<'_>) -> String {
+    let mut lines = Vec::new();
+    for part in [&report.shared, &report.unshared] {
+        lines.extend(measured(part));
+        lines.extend(control(part.comparison));
+        lines.push(String::new());
+    }
+    let shared = &report.shared;
+    lines.extend(legend(shared.comparison));
+    lines.extend(report.gain().map(|gain| {
+        let (reference, Interval { median, low, high }) = (reference(shared.comparison), gain);
+        format!(
+            "sharing: without it {reference} takes {median:.2} [{low:.2}, {high:.2}] times as long; both tables are \
+             of the same rounds."
+        )
+    }));
+    lines.push(machine::text(shared.machine));
+    lines.join("\n")
+}
+
+/// The table with its heading, and what is said of this table alone.
+fn measured(report: &Report<'_>) -> Vec<String> {
+    let Report { subject, comparison, .. } = report;
+    let rows = comparison.rows.iter().map(|row| cells(subject, row));
+    let table = style::table(HEADER, rows, NUMBERS);
+    let mut lines = vec![heading(report), String::new(), table, String::new()];
+    lines.extend(comparison.rows.iter().filter_map(complaint));
+    lines.push(computed(subject));
+    lines
 }
 
 fn heading(Report { subject, comparison, .. }: &Report<'_>) -> String {
@@ -51,7 +81,7 @@ fn heading(Report { subject, comparison, .. }: &Report<'_>) -> String {
     )
 }
 
-fn cells(row: &Row) -> [String; HEADER.len()] {
+fn cells(subject: &Subject, row: &Row) -> [String; HEADER.len()] {
     let figure = |text: Option<String>| text.unwrap_or_else(|| NONE.to_owned());
     let figures = row.figures;
     let control = if row.role == Role::Control { " (control)" } else { "" };
@@ -72,6 +102,7 @@ fn cells(row: &Row) -> [String; HEADER.len()] {
         figure(figures.map(|f| style::interval(f.speedup))),
         figure(figures.map(|f| format!("{:.0} %", f.efficiency * 100.0))),
         figure(figures.and_then(|f| f.serial_fraction).map(|fraction| format!("{fraction:.3}"))),
+        figure(row.rays.map(|counted| rays(subject, counted))),
         figure(start),
         identical.to_owned(),
     ]
@@ -90,6 +121,32 @@ fn milliseconds(ns: f64) -> String {
     format!("{ms:.decimals$}")
 }
 
+/// A pixel, and how many more they are than what was needed.
+fn rays(subject: &Subject, Rays { primary, redundant }: Rays) -> String {
+    let a_pixel = primary as f64 / (f64::from(subject.width) * f64::from(subject.height));
+    let percent = redundant as f64 / primary.saturating_sub(redundant).max(1) as f64 * 100.0;
+    let decimals = usize::from(percent < 100.0);
+    format!("{a_pixel:.1}/px +{percent:.decimals$} %")
+}
+
+/// How the picture was computed, as far as that changes no bits.
+fn computed(subject: &Subject) -> String {
+    let lanes = match subject.lanes {
+        1 => "rays one by one".to_owned(),
+        lanes => format!("{lanes} rays side by side"),
+    };
+    let samples = match (subject.antialiasing, subject.sampling) {
+        (0, _) | (_, Sampling::Importance) => "no samples to share",
+        _ if subject.share_samples => "samples shared",
+        _ => "samples not shared",
+    };
+    let search = match (subject.formulas, subject.search) {
+        (Formulas::Textbook, Search::Auto) => "exhaustive, as the textbook's formulas need it",
+        _ => search(subject.search),
+    };
+    format!("computed: {lanes}, {samples}, search {search}")
+}
+
 /// What is wrong with a row, if anything.
 fn complaint(row: &Row) -> Option<String> {
     let plural = if row.threads == 1 { "" } else { "s" };
@@ -104,16 +161,24 @@ fn complaint(row: &Row) -> Option<String> {
     }
 }
 
-fn notes(comparison: &Comparison) -> Vec<String> {
-    let reference = comparison.rows.first().map_or("the reference", |row| row.strategy);
-    let mut notes = vec![
+/// How the columns are meant.
+fn legend(comparison: &Comparison) -> [String; 3] {
+    let reference = reference(comparison);
+    [
         "time: rendering alone, each picture verified outside of it; threads started \"before\" it are not in it."
             .to_owned(),
         format!(
             "speed-up: time of {reference} over the row's, median over the rounds. Serial fraction: Karp and Flatt."
         ),
-    ];
-    notes.extend(comparison.control().map(|control| {
+        "rays: primary ones, counted in the warm-up; + those that the whole picture as a single tile would not need."
+            .to_owned(),
+    ]
+}
+
+/// What the control says of the table.
+fn control(comparison: &Comparison) -> Option<String> {
+    let reference = reference(comparison);
+    comparison.control().map(|control| {
         let Interval { median, low, high } = control;
         let verdict = if control.contains(1.0) {
             "as it should be, 1 is in it.\n\
@@ -123,6 +188,9 @@ fn notes(comparison: &Comparison) -> Vec<String> {
              Chance alone keeps it out of at most one quiet run in twenty."
         };
         format!("control: {reference} over itself is {median:.3} [{low:.3}, {high:.3}]; {verdict}")
-    }));
-    notes
+    })
+}
+
+fn reference(comparison: &Comparison) -> &'static str {
+    comparison.rows.first().map_or("the reference", |row| row.strategy)
 }

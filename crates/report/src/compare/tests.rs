@@ -1,14 +1,17 @@
 //! The three forms of one made-up comparison: a reference, its control, a pool, a queue that drew a
-//! wrong picture, and one whose threads could not be started.
+//! wrong picture, and one whose threads could not be started. And of two that were measured together.
 
 use super::*;
 use rayweave_core::{Digest, Image};
 use rayweave_measure::Interval;
-use rayweave_measure::compare::{Figures, Role, Sample};
+use rayweave_measure::compare::{Figures, Rays, Role, Sample};
 
 fn digest(brightness: f32) -> Digest {
     Image::filled(1, 1, [brightness; 3]).expect("a pixel").digest()
 }
+
+/// Of 500 x 400 pixels: 4.38 each, of which 4 would have been enough.
+const RAYS: Rays = Rays { primary: 876_000, redundant: 76_000 };
 
 fn row(strategy: &'static str, threads: usize, role: Role, threads_start: ThreadsStart, ns: u64) -> Row {
     let speedup = 2e9 / ns as f64;
@@ -20,6 +23,7 @@ fn row(strategy: &'static str, threads: usize, role: Role, threads_start: Thread
         identical: true,
         digest: Some(digest(1.0)),
         error: None,
+        rays: Some(RAYS),
         samples: vec![Sample { prepare_ns: 84_600, render_ns: ns }; 2],
         figures: Some(Figures {
             median_ns: ns as f64,
@@ -41,6 +45,7 @@ fn comparison() -> Comparison {
     failed.identical = false;
     failed.figures = None;
     failed.samples.clear();
+    failed.rays = None;
     failed.error = Some("cannot start 9000 threads".to_owned());
     let rows = vec![
         row("sequential", 1, Role::Reference, ThreadsStart::Never, 2_000_000_000),
@@ -67,8 +72,8 @@ fn machine() -> Machine {
     }
 }
 
-fn with_report(comparison: &Comparison, read: impl FnOnce(&Report<'_>) -> String) -> String {
-    let subject = Subject {
+fn subject() -> Subject {
+    Subject {
         scene: "room".to_owned(),
         width: 500,
         height: 400,
@@ -77,8 +82,41 @@ fn with_report(comparison: &Comparison, read: impl FnOnce(&Report<'_>) -> String
         sampling: Sampling::Lattice,
         formulas: Formulas::Robust,
         precision: "f32".to_owned(),
-    };
-    read(&Report { subject: &subject, comparison, machine: &machine() })
+        lanes: 8,
+        share_samples: true,
+        search: Search::Auto,
+    }
+}
+
+fn with_report(comparison: &Comparison, read: impl FnOnce(&Report<'_>) -> String) -> String {
+    read(&Report { subject: &subject(), comparison, machine: &machine() })
+}
+
+/// The same without samples shared: the reference takes three times as long, and the pool fails.
+fn unshared() -> Comparison {
+    let mut comparison = comparison();
+    comparison.rows.truncate(3);
+    for row in &mut comparison.rows {
+        row.samples.iter_mut().for_each(|sample| sample.render_ns *= 3);
+        row.rays = Some(Rays { primary: 5_000_000, redundant: 0 });
+    }
+    comparison.rows[2].error = Some("gone".to_owned());
+    comparison.rows[2].figures = None;
+    comparison
+}
+
+fn with_both(unshared: &Comparison, read: impl FnOnce(&BothReport<'_>) -> String) -> String {
+    let (subject, machine, shared) = (subject(), machine(), comparison());
+    let other = Subject { share_samples: false, ..subject.clone() };
+    read(&BothReport {
+        shared: Report { subject: &subject, comparison: &shared, machine: &machine },
+        unshared: Report { subject: &other, comparison: unshared, machine: &machine },
+    })
+}
+
+/// Digests differ from version to version of the picture that they are made of.
+fn without_digests(text: &str) -> String {
+    text.replace(&digest(1.0).short(), "RIGHT").replace(&digest(0.5).short(), "WRONG")
 }
 
 #[test]
@@ -103,8 +141,7 @@ control: sequential over itself is 0.995 [0.955, 1.055]; as it should be, 1 is i
 That much is order and drift, of one thread; to tell rows apart compare their own intervals.
 machine: A CPU, 8 logical cores, 2 available, quota 1.5 cores, linux x86_64
 program: rustc 1.0, release build, commit 0123456789ab"#;
-    let text = text.replace(&digest(1.0).short(), "RIGHT").replace(&digest(0.5).short(), "WRONG");
-    assert_eq!(text, expected);
+    assert_eq!(without_digests(&text), expected);
 }
 
 #[test]
@@ -153,6 +190,11 @@ fn json_has_the_keys_that_stay() {
     assert!((speedup["median"].as_f64().expect("a number") - 1.95).abs() < 1e-9);
     assert_eq!((&pool["threads_start"], &pool["prepare_ns"]), (&"prepare".into(), &84_600.into()));
     assert_eq!(value["results"][1]["control"], true);
+    assert_eq!((&value["lanes"], &value["share_samples"]), (&8.into(), &true.into()));
+    assert_eq!(value["search"], "auto");
+    assert_eq!((&pool["primary_rays"], &pool["redundant_rays"]), (&876_000.into(), &76_000.into()));
+    assert!(value["results"][4]["primary_rays"].is_null() && value["results"][4]["redundant_rays"].is_null());
+    assert_eq!((value.get("unshared"), value.get("sharing_speedup")), (None, None));
 }
 
 #[test]
@@ -183,4 +225,88 @@ fn csv_has_a_line_for_each_row() {
     assert_eq!(&records[4][column("strategy")], "many, \"too\" many");
     assert_eq!(&records[4][column("speedup")], "");
     assert_eq!(&records[4][column("commit")], "0123456789ab");
+    assert_eq!((&records[2][column("lanes")], &records[2][column("search")]), ("8", "auto"));
+    assert_eq!(&records[2][column("share_samples")], "true");
+    assert_eq!(
+        (&records[2][column("primary_rays")], &records[2][column("redundant_rays")]),
+        ("876000", "76000")
+    );
+    assert_eq!(&records[4][column("primary_rays")], "");
+    // What older readers find by its place stays there.
+    assert_eq!((column("scene"), column("commit"), column("lanes")), (0, 27, 28));
+}
+
+#[test]
+fn both_tables_as_a_whole() {
+    let expected = r#"BOTH"#;
+    let text = with_both(&unshared(), |report| report.table());
+    assert_eq!(without_digests(&text), expected);
+    assert!(notes_fit(&text), "{text}");
+}
+
+#[test]
+fn without_a_reference_nothing_is_gained() {
+    let mut unshared = unshared();
+    unshared.rows[0].figures = None;
+    let text = with_both(&unshared, |report| report.table());
+    assert!(!text.contains("sharing:"), "{text}");
+    let text = with_both(&unshared, |report| report.json());
+    let value: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    assert_eq!(value.get("sharing_speedup"), Some(&serde_json::Value::Null));
+}
+
+#[test]
+fn json_of_both_is_that_of_the_shared_with_the_other_in_it() {
+    let parse = |text: &str| serde_json::from_str::<serde_json::Value>(text).expect("JSON");
+    let mut both = parse(&with_both(&unshared(), |report| report.json()));
+    let keys = both.as_object_mut().expect("an object");
+    let other = keys.remove("unshared").expect("the other");
+    assert_eq!(
+        keys.remove("sharing_speedup"),
+        Some(serde_json::json!({ "median": 3.0, "low": 3.0, "high": 3.0 }))
+    );
+    assert_eq!(both, parse(&with_report(&comparison(), |report| report.json())));
+
+    let mut alone = parse(&with_report(&unshared(), |report| report.json()));
+    alone["share_samples"] = false.into();
+    assert_eq!(other, alone);
+}
+
+#[test]
+fn csv_of_both_is_one_table() {
+    let text = with_both(&unshared(), |report| report.csv());
+    let alone = with_report(&comparison(), |report| report.csv());
+    let rest = text.strip_prefix(&alone).expect("the lines with samples shared come first");
+    assert_eq!(rest.lines().count(), 3);
+    assert!(rest.lines().all(|line| line.ends_with(",8,false,auto,5000000,0")), "{rest}");
+}
+
+#[test]
+fn rays_of_a_pixel_and_their_excess() {
+    let cell = |primary, redundant| table::rays(&subject(), Rays { primary, redundant });
+    assert_eq!(cell(876_000, 76_000), "4.4/px +9.5 %");
+    assert_eq!(cell(5_000_000, 4_190_000), "25.0/px +517 %");
+    assert_eq!(cell(5_000_000, 0), "25.0/px +0.0 %");
+    assert_eq!(cell(0, 0), "0.0/px +0.0 %");
+}
+
+#[test]
+fn how_it_was_computed() {
+    let of = |change: &dyn Fn(&mut Subject)| {
+        let mut subject = subject();
+        change(&mut subject);
+        table::computed(&subject)
+    };
+    assert_eq!(of(&|_| ()), "computed: 8 rays side by side, samples shared, search auto");
+    assert_eq!(
+        of(&|s| (s.lanes, s.share_samples, s.search) = (1, false, Search::Exhaustive)),
+        "computed: rays one by one, samples not shared, search exhaustive"
+    );
+    let nothing = "computed: 8 rays side by side, no samples to share, search auto";
+    assert_eq!(of(&|s| s.antialiasing = 0), nothing);
+    assert_eq!(of(&|s| s.sampling = Sampling::Importance), nothing);
+    assert!(
+        of(&|s| s.formulas = Formulas::Textbook)
+            .ends_with("search exhaustive, as the textbook's formulas need it")
+    );
 }

@@ -78,21 +78,29 @@ fn draw_panel(
         }
     }
     for (depth, color) in depths.into_iter().zip(COLORS) {
-        let series = |sampling| {
-            let wanted =
-                move |setting: &Setting| setting.max_reflections == depth && setting.sampling == sampling;
+        let series = |sampling, adaptive| {
+            let wanted = move |setting: &Setting| {
+                (setting.max_reflections, setting.sampling, setting.adaptive) == (depth, sampling, adaptive)
+            };
             rows().filter(move |row| wanted(&row.setting)).map(place)
         };
         chart
-            .draw_series(series(Sampling::Lattice).map(|at| Circle::new(at, MARKER, color.filled())))?
+            .draw_series(series(Sampling::Lattice, false).map(|at| Circle::new(at, MARKER, color.filled())))?
             .label(format!("lattice, bounces: {depth}"))
             .legend(move |(x, y)| Circle::new((x + 8, y), MARKER, color.filled()));
         chart
             .draw_series(
-                series(Sampling::Importance).map(|at| TriangleMarker::new(at, MARKER + 2, color.filled())),
+                series(Sampling::Importance, false)
+                    .map(|at| TriangleMarker::new(at, MARKER + 2, color.filled())),
             )?
             .label(format!("importance, bounces: {depth}"))
             .legend(move |(x, y)| TriangleMarker::new((x + 8, y), MARKER + 2, color.filled()));
+        chart
+            .draw_series(
+                series(Sampling::Lattice, true).map(|at| Cross::new(at, MARKER, color.stroke_width(2))),
+            )?
+            .label(format!("adaptive lattice, bounces: {depth}"))
+            .legend(move |(x, y)| Cross::new((x + 8, y), MARKER, color.stroke_width(2)));
         let of_depth = rows().filter(|row| row.setting.max_reflections == depth);
         chart.draw_series(of_depth.map(|row| label(row, &color)))?;
     }
@@ -109,7 +117,7 @@ fn draw_panel(
 
 /// Above a point of the lattice, below one of the other sampling: the rays a pixel.
 fn label<'a>(row: &Row, color: &'a RGBColor) -> Text<'a, Point, String> {
-    let above = row.setting.sampling == Sampling::Lattice;
+    let above = row.setting.sampling == Sampling::Lattice && !row.setting.adaptive;
     let place_of_text = if above { VPos::Bottom } else { VPos::Top };
     let style = TextStyle::from(("sans-serif", 11)).color(color).pos(Pos::new(HPos::Center, place_of_text));
     let (time, error) = place(row);

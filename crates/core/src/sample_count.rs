@@ -1,0 +1,75 @@
+//! How many samples a rectangle of pixels takes, counted without tracing any.
+
+use crate::scene::{RenderSettings, Sampling};
+
+/// The primary rays that the tracer follows for a tile of `width` x `height` pixels.
+///
+/// On a lattice of density `s` a tile that shares its samples takes `(s (width + 1) + 1) (s (height + 1) + 1)` of
+/// them: `s` steps a pixel, and half a pixel more on each side, for the filter reaches into the neighbours. What
+/// neighbouring tiles have in common each of them traces for itself, so the smaller the tiles of a picture, the more
+/// rays: the least is a single tile, the most a tile for each pixel, which is as if nothing were shared.
+///
+/// Without sharing, and where no two pixels have a sample in common (one ray a pixel, or
+/// [by importance](Sampling::Importance)), it is [`RenderSettings::rays_per_pixel`] for each pixel.
+///
+/// Reflected rays and those to the lights come on top; their number depends on what is hit.
+#[must_use]
+pub fn primary_rays(width: u32, height: u32, settings: &RenderSettings, share_samples: bool) -> u64 {
+    let (width, height) = (u64::from(width), u64::from(height));
+    match (settings.antialiasing, settings.sampling) {
+        // Of no pixels there is nothing that reaches beyond them.
+        (density @ 1.., Sampling::Lattice) if share_samples && width > 0 && height > 0 => {
+            let points = |pixels: u64| u64::from(density) * (pixels + 1) + 1;
+            points(width) * points(height)
+        }
+        _ => width * height * u64::from(settings.rays_per_pixel()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::antialiasing::Filter;
+    use std::collections::BTreeSet;
+
+    fn settings(antialiasing: u32, sampling: Sampling) -> RenderSettings {
+        RenderSettings { antialiasing, sampling, ..RenderSettings::default() }
+    }
+
+    /// Catches a step or an edge too many: the places of all pixels' samples, each place once.
+    #[test]
+    fn a_shared_tile_takes_each_place_of_its_pixels_samples_once() {
+        for density in [1, 2, 3, 5, 32] {
+            let settings = settings(density, Sampling::Lattice);
+            let filter = Filter::<f64>::new(&settings);
+            for (width, height) in [(1, 1), (1, 4), (3, 1), (5, 3)] {
+                let mut places = BTreeSet::new();
+                for (x, y) in (0..width).flat_map(|x| (0..height).map(move |y| (x, y))) {
+                    // Whole numbers of half steps, of which a pixel has `2 s`.
+                    let centre = |pixel: u32| i64::from(2 * density * pixel);
+                    places.extend(filter.places().map(|(a, b)| (centre(x) + a as i64, centre(y) + b as i64)));
+                }
+                let found = primary_rays(width, height, &settings, true);
+                assert_eq!(found, places.len() as u64, "{width} x {height} at {density}");
+            }
+        }
+    }
+
+    #[test]
+    fn nothing_shared_is_every_pixel_s_own_samples() {
+        assert_eq!(primary_rays(7, 3, &settings(2, Sampling::Lattice), false), 21 * 25);
+        for share_samples in [false, true] {
+            assert_eq!(primary_rays(7, 3, &settings(0, Sampling::Lattice), share_samples), 21);
+            assert_eq!(primary_rays(7, 3, &settings(2, Sampling::Importance), share_samples), 21 * 13);
+            assert_eq!(primary_rays(0, 3, &settings(2, Sampling::Lattice), share_samples), 0);
+        }
+    }
+
+    /// Catches a product that does not fit: the largest picture, at the highest density.
+    #[test]
+    fn the_largest_picture_can_be_counted() {
+        let settings = settings(32, Sampling::Lattice);
+        assert_eq!(primary_rays(65535, 65535, &settings, true), 2_097_153 * 2_097_153);
+        assert_eq!(primary_rays(65535, 65535, &settings, false), 65535 * 65535 * 4225);
+    }
+}
