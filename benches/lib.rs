@@ -1,7 +1,12 @@
-//! The two loads that the benches spread: one even, one with nearly all of its cost in a corner.
+//! What the benches render: two loads to be spread, one even, one with nearly all of its cost in a corner; and
+//! [probes](Probe), scenes whose rays are counted.
+
+mod probes;
+
+pub use probes::{Kind, Probe, Rays};
 
 use rayweave_core::precision::Demand;
-use rayweave_core::{Work, tracer};
+use rayweave_core::{Scene, Work, tracer};
 use rayweave_scene_file as scene_file;
 use std::path::Path;
 
@@ -27,9 +32,19 @@ pub fn loads() -> [Load; 2] {
     [load("balanced", "room.toml", (250, 250)), load("corner", "imbalance.toml", (250, 250))]
 }
 
-fn load(name: &'static str, file: &str, (width, height): (u32, u32)) -> Load {
+/// The repository's scene in this file.
+///
+/// # Panics
+///
+/// It cannot be read.
+#[must_use]
+pub fn scene(file: &str) -> Scene {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes").join(file);
-    let scene = scene_file::load(&path).unwrap_or_else(|e| panic!("{e}")).scene;
+    scene_file::load(&path).unwrap_or_else(|e| panic!("{e}")).scene
+}
+
+fn load(name: &'static str, file: &str, (width, height): (u32, u32)) -> Load {
+    let scene = scene(file);
     let work =
         tracer(&scene, width, height, Demand::of(&scene).precision()).unwrap_or_else(|e| panic!("{e}"));
     Load { name, width, height, work }

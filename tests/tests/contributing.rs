@@ -60,7 +60,12 @@ fn insert(file: &Path, after: &str, line: &str) {
 fn cargo(workspace: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO"))
         // Dependencies are many, and here need not be fast.
-        .args(["--config", "profile.dev.package.\"*\".opt-level = 0"])
+        .args([
+            "--config",
+            "profile.dev.package.\"*\".opt-level = 0",
+            "--config",
+            "profile.dev.opt-level = 0",
+        ])
         .args(arguments)
         .current_dir(workspace)
         // Beside the folder of this build, whose binary other tests are running.

@@ -9,6 +9,7 @@
 //! This crate starts no thread, opens no file and reads no clock.
 
 mod adaptive;
+pub mod analysis;
 mod antialiasing;
 mod bundle;
 mod camera;
@@ -16,6 +17,7 @@ pub mod cast;
 mod confinement;
 pub mod formulas;
 pub mod image;
+mod kind;
 mod lane;
 #[cfg(test)]
 mod lane_identity;
@@ -36,6 +38,7 @@ mod tree;
 mod vector;
 pub mod work;
 
+pub use analysis::Analysis;
 pub use cast::Caster;
 pub use formulas::{Arithmetic, Formulas};
 pub use image::{Area, Digest, Image, Rgb, Tile};

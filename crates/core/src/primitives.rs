@@ -3,6 +3,7 @@
 
 use crate::bundle::Bundle;
 use crate::formulas::{Aim, Family, LightPath};
+use crate::kind::Kind;
 use crate::lane::{Lane, Mask, Scalar};
 use crate::material::Light;
 use crate::ray::{Heading, Ray, miss};
@@ -34,17 +35,6 @@ pub(crate) struct Primitives<S> {
     tree: Option<Tree<S>>,
     /// The material of each primitive, by its number.
     materials: Vec<usize>,
-}
-
-/// The primitives of one kind, in the order in which they are tried.
-#[derive(Debug)]
-struct Kind<T> {
-    shapes: Vec<T>,
-    /// Of each shape.
-    numbers: Vec<u32>,
-    /// Where each shape is, by its number less the kind's first.
-    places: Vec<u32>,
-    first: u32,
 }
 
 /// A few primitives that are tried together: ranges of places.
@@ -84,42 +74,6 @@ impl<L: Lane> Hit<L> {
     }
 }
 
-impl<T: Clone> Kind<T> {
-    /// Puts the shapes in this order of their present places.
-    fn arrange(&mut self, order: &[u32]) {
-        self.shapes = order.iter().map(|&place| self.shapes[place as usize].clone()).collect();
-        self.numbers = order.iter().map(|&place| self.numbers[place as usize]).collect();
-        for (place, &number) in (0..).zip(&self.numbers) {
-            self.places[(number - self.first) as usize] = place;
-        }
-    }
-}
-
-impl<T> Kind<T> {
-    fn new<P>(primitives: &[P], first: usize, shape: impl Fn(&P) -> T) -> Self {
-        let count = primitives.len() as u32;
-        Self {
-            shapes: primitives.iter().map(shape).collect(),
-            numbers: (first as u32..first as u32 + count).collect(),
-            places: (0..count).collect(),
-            first: first as u32,
-        }
-    }
-
-    /// The shape with this number, unless it is of another kind.
-    #[inline(always)]
-    fn get(&self, number: u32) -> Option<&T> {
-        let place = *self.places.get(number.checked_sub(self.first)? as usize)?;
-        self.shapes.get(place as usize)
-    }
-
-    #[inline(always)]
-    fn range(&self, range: &Range<u32>) -> impl Iterator<Item = (u32, &T)> {
-        let range = range.start as usize..range.end as usize;
-        self.numbers[range.clone()].iter().copied().zip(&self.shapes[range])
-    }
-}
-
 impl<S: Scalar> Primitives<S> {
     /// With a tree over the bounded primitives if `search` wants one and it pays.
     pub(crate) fn new(scene: &Scene, search: Search) -> Self {
@@ -150,8 +104,9 @@ impl<S: Scalar> Primitives<S> {
         primitives
     }
 
-    pub(crate) fn are_in_a_tree(&self) -> bool {
-        self.tree.is_some()
+    /// Of the tree, if there is one.
+    pub(crate) fn leaves(&self) -> Option<usize> {
+        self.tree.as_ref().map(Tree::leaves)
     }
 
     /// Puts a tree over the bounded primitives, if there are enough of them.
@@ -284,27 +239,45 @@ impl<S: Scalar> Primitives<S> {
         for (i, cone) in bundle.spheres.iter().enumerate() {
             let met = wanted & cone.may_meet(direction, length);
             if met.any() {
-                let t = F::sphere(&self.spheres.shapes[i], ray, &sphere::Aim::new(ray), met);
-                wanted = found(self.spheres.first + i as u32, t);
+                wanted = found(self.spheres.first + i as u32, self.sphere::<L, F>(i, ray, met));
             }
         }
         for (i, cone) in bundle.triangles.iter().enumerate() {
             let met = wanted & cone.may_meet(direction, length);
             if met.any() {
-                ray.by_heading(met, |heading, met| {
-                    let t =
-                        F::triangle(&self.triangles.shapes[i], ray, &triangle::Aim::new(ray, heading), met);
-                    wanted = found(self.triangles.first + i as u32, t);
-                });
+                wanted = found(self.triangles.first + i as u32, self.triangle::<L, F>(i, ray, met));
             }
         }
         for (i, cone) in bundle.cylinders.iter().enumerate() {
             let met = wanted & cone.may_meet(direction, length);
             if met.any() {
-                let t = F::cylinder(&self.cylinders.shapes[i], ray, &cylinder::Aim::new(ray), met);
-                wanted = found(self.cylinders.first + i as u32, t);
+                wanted = found(self.cylinders.first + i as u32, self.cylinder::<L, F>(i, ray, met));
             }
         }
+    }
+
+    // Where rays of `wanted` hit the shape of a kind in place `i`. Called where few rays come, and so not copied there:
+    // every copy is compiled for each number type and formula.
+
+    #[inline(never)]
+    fn sphere<L: Lane<Scalar = S>, F: Family>(&self, i: usize, ray: &Ray<L>, wanted: L::Mask) -> L {
+        F::sphere(&self.spheres.shapes[i], ray, &sphere::Aim::new(ray), wanted)
+    }
+
+    #[inline(never)]
+    fn triangle<L: Lane<Scalar = S>, F: Family>(&self, i: usize, ray: &Ray<L>, wanted: L::Mask) -> L {
+        let mut nearest = miss();
+        ray.by_heading(wanted, |heading, wanted| {
+            let aim = triangle::Aim::new(ray, heading);
+            let t = F::triangle(&self.triangles.shapes[i], ray, &aim, wanted);
+            nearest = L::select(wanted, t, nearest);
+        });
+        nearest
+    }
+
+    #[inline(never)]
+    fn cylinder<L: Lane<Scalar = S>, F: Family>(&self, i: usize, ray: &Ray<L>, wanted: L::Mask) -> L {
+        F::cylinder(&self.cylinders.shapes[i], ray, &cylinder::Aim::new(ray), wanted)
     }
 
     /// Tries every primitive of a leaf.

@@ -60,8 +60,8 @@ impl<L: Lane> Ray<L> {
         while let Some(first) = L::first(todo, direction) {
             let heading = Heading::of(first);
             let mut alike = todo & along[heading.order[2]];
-            for axis in 0..3 {
-                alike = alike & if heading.backward[axis] { backward[axis] } else { !backward[axis] };
+            for (one, all) in heading.backward.into_iter().zip(backward) {
+                alike = alike & if one { all } else { !all };
             }
             group(heading, alike);
             todo = todo & !alike;

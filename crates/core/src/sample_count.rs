@@ -12,17 +12,19 @@ use crate::scene::{RenderSettings, Sampling};
 /// Without sharing, and where no two pixels have a sample in common (one ray a pixel, or
 /// [by importance](Sampling::Importance)), it is [`RenderSettings::rays_per_pixel`] for each pixel.
 ///
-/// Reflected rays and those to the lights come on top; their number depends on what is hit.
+/// `None` for an [adaptive](RenderSettings::adaptive) lattice: how many of its points are traced depends on what is
+/// seen. Reflected rays and those to the lights come on top; their number depends on that always.
 #[must_use]
-pub fn primary_rays(width: u32, height: u32, settings: &RenderSettings, share_samples: bool) -> u64 {
+pub fn primary_rays(width: u32, height: u32, settings: &RenderSettings, share_samples: bool) -> Option<u64> {
     let (width, height) = (u64::from(width), u64::from(height));
     match (settings.antialiasing, settings.sampling) {
+        (1.., Sampling::Lattice) if settings.adaptive => None,
         // Of no pixels there is nothing that reaches beyond them.
         (density @ 1.., Sampling::Lattice) if share_samples && width > 0 && height > 0 => {
             let points = |pixels: u64| u64::from(density) * (pixels + 1) + 1;
-            points(width) * points(height)
+            Some(points(width) * points(height))
         }
-        _ => width * height * u64::from(settings.rays_per_pixel()),
+        _ => Some(width * height * u64::from(settings.rays_per_pixel())),
     }
 }
 
@@ -50,18 +52,18 @@ mod tests {
                     places.extend(filter.places().map(|(a, b)| (centre(x) + a as i64, centre(y) + b as i64)));
                 }
                 let found = primary_rays(width, height, &settings, true);
-                assert_eq!(found, places.len() as u64, "{width} x {height} at {density}");
+                assert_eq!(found, Some(places.len() as u64), "{width} x {height} at {density}");
             }
         }
     }
 
     #[test]
     fn nothing_shared_is_every_pixel_s_own_samples() {
-        assert_eq!(primary_rays(7, 3, &settings(2, Sampling::Lattice), false), 21 * 25);
+        assert_eq!(primary_rays(7, 3, &settings(2, Sampling::Lattice), false), Some(21 * 25));
         for share_samples in [false, true] {
-            assert_eq!(primary_rays(7, 3, &settings(0, Sampling::Lattice), share_samples), 21);
-            assert_eq!(primary_rays(7, 3, &settings(2, Sampling::Importance), share_samples), 21 * 13);
-            assert_eq!(primary_rays(0, 3, &settings(2, Sampling::Lattice), share_samples), 0);
+            assert_eq!(primary_rays(7, 3, &settings(0, Sampling::Lattice), share_samples), Some(21));
+            assert_eq!(primary_rays(7, 3, &settings(2, Sampling::Importance), share_samples), Some(21 * 13));
+            assert_eq!(primary_rays(0, 3, &settings(2, Sampling::Lattice), share_samples), Some(0));
         }
     }
 
@@ -69,7 +71,19 @@ mod tests {
     #[test]
     fn the_largest_picture_can_be_counted() {
         let settings = settings(32, Sampling::Lattice);
-        assert_eq!(primary_rays(65535, 65535, &settings, true), 2_097_153 * 2_097_153);
-        assert_eq!(primary_rays(65535, 65535, &settings, false), 65535 * 65535 * 4225);
+        assert_eq!(primary_rays(65535, 65535, &settings, true), Some(2_097_153 * 2_097_153));
+        assert_eq!(primary_rays(65535, 65535, &settings, false), Some(65535 * 65535 * 4225));
+    }
+
+    /// Catches a count of rays that adaptive sampling may not trace.
+    #[test]
+    fn an_adaptive_lattice_is_not_counted_and_other_samples_are() {
+        let count = |antialiasing, sampling| {
+            let settings = RenderSettings { adaptive: true, ..settings(antialiasing, sampling) };
+            [false, true].map(|share_samples| primary_rays(7, 3, &settings, share_samples))
+        };
+        assert_eq!(count(2, Sampling::Lattice), [None, None]);
+        assert_eq!(count(0, Sampling::Lattice), [Some(21), Some(21)]);
+        assert_eq!(count(2, Sampling::Importance), [Some(21 * 13), Some(21 * 13)]);
     }
 }

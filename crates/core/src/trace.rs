@@ -20,11 +20,12 @@ use std::marker::PhantomData;
 pub(crate) struct World<S, F> {
     pub(crate) primitives: Primitives<S>,
     materials: Vec<Material<S>>,
-    lights: Vec<Light<S>>,
+    pub(crate) lights: Vec<Light<S>>,
     /// What rays from the eye may meet; else anything.
-    eye: Option<Bundle<S>>,
+    pub(crate) eye: Option<Bundle<S>>,
     background: Vector<S>,
-    max_reflections: u32,
+    /// The most bounces: 0 if nothing mirrors.
+    pub(crate) max_reflections: u32,
     /// Whether it is asked for.
     trails: bool,
     formulas: PhantomData<F>,
@@ -50,11 +51,13 @@ impl<S: Scalar, F: Family> World<S, F> {
         // What is left out rests on the formulas' error bounds.
         let search = if F::FAITHFUL { search } else { Search::Exhaustive };
         let primitives = Primitives::new(scene, search);
-        let cones = search == Search::Auto && !primitives.are_in_a_tree();
+        let cones = search == Search::Auto && primitives.leaves().is_none();
         let bundle = |point: DVec3| cones.then(|| Bundle::new(scene, point));
         // Formulas that let a ray slip through a plane may bring it anywhere.
         let confined = eye.filter(|_| F::FAITHFUL);
-        let lights = scene.lights.iter().filter_map(|light| {
+        let mirrors = scene.materials.iter().any(|material| material.reflection > 0.0);
+        let shining = scene.lights.iter().filter(|light| light.color * light.power != DVec3::ZERO);
+        let lights = shining.filter_map(|light| {
             let planes = hiding_planes(scene, light.position, confined, S::ROUNDOFF)?;
             Some(Light::new(light, planes, bundle(light.position)))
         });
@@ -64,7 +67,7 @@ impl<S: Scalar, F: Family> World<S, F> {
             primitives,
             materials: scene.materials.iter().map(Material::new).collect(),
             background: Vector::rounded(scene.render.background),
-            max_reflections: scene.render.max_reflections,
+            max_reflections: if mirrors { scene.render.max_reflections } else { 0 },
             trails: scene.render.adaptive,
             formulas: PhantomData,
         }

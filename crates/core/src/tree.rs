@@ -13,7 +13,6 @@ use crate::vector::Vector;
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::{Bvh2, builder::build_bvh2};
-use std::time::Duration;
 
 /// The box around a primitive: the lower x, y and z, the upper ones, and two numbers that make it eight.
 #[derive(Clone, Copy, Debug)]
@@ -93,7 +92,7 @@ impl<S: Scalar> Tree<S> {
             return None;
         }
         let boxes: Vec<Aabb> = bounds.iter().map(rounded).collect();
-        let bvh = build_bvh2(&boxes, BUILD, &mut Duration::default());
+        let bvh = build_bvh2(&boxes, BUILD, &mut Default::default());
         if depth(&bvh) > MAX_DEPTH {
             return None;
         }
@@ -136,6 +135,10 @@ impl<S: Scalar> Tree<S> {
             }
         }
         Some(tree)
+    }
+
+    pub(crate) fn leaves(&self) -> usize {
+        self.leaves.len()
     }
 
     /// Shows `found` every leaf that a ray of `wanted`, all with this heading, may hit before `limit`, with the rays

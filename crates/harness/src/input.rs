@@ -87,8 +87,10 @@ impl Input {
     /// What is rendered, and how: two lines, and another one if something of it is left out.
     pub fn describe(&self) -> String {
         let Self { name, width, height, .. } = self;
-        let RenderSettings { antialiasing, sampling, .. } = self.scene.render;
-        let picture = format!("{name}, {width} x {height} pixels, antialiasing {antialiasing} by {sampling}");
+        let RenderSettings { antialiasing, sampling, adaptive, .. } = self.scene.render;
+        let adaptive = if adaptive { " (adaptive)" } else { "" };
+        let picture =
+            format!("{name}, {width} x {height} pixels, antialiasing {antialiasing} by {sampling}{adaptive}");
         [Some(picture), Some(self.arithmetic_line()), self.skipped_line()]
             .into_iter()
             .flatten()

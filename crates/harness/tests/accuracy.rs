@@ -15,8 +15,9 @@ fn error_writes_every_setting() {
     let object = json(&folder.path().join("a.json"));
     assert_eq!((&object["schema"], &object["width"]), (&Value::from(1), &Value::from(6)));
     let results = object["results"].as_array().expect("a list");
-    // Four arithmetics, seven densities of the lattice and six of the other sampling, bounces 4, 1, 0.
-    assert_eq!(results.len(), 4 * 13 * 3);
+    // Four arithmetics, seven densities of the lattice and six of the other sampling, bounces 4, 1, 0; five of
+    // them adaptive too, with all bounces.
+    assert_eq!(results.len(), 4 * (13 * 3 + 5));
     let rounds = object["rounds"].as_u64().expect("a number") as usize;
     assert!(rounds >= 6);
     assert!(results.iter().all(|r| r["samples_ns"].as_array().is_some_and(|s| s.len() == rounds)));
@@ -47,7 +48,7 @@ fn error_tries_what_the_scene_has() {
     fs::write(folder.path().join("ball.toml"), plain).expect("written");
     let table = rayweave(folder.path(), "error ball.toml --size 5x5 --json a.json").expect_success();
     let object = json(&folder.path().join("a.json"));
-    assert_eq!(object["results"].as_array().map(Vec::len), Some(4 * 13));
+    assert_eq!(object["results"].as_array().map(Vec::len), Some(4 * (13 + 5)));
     let parts: Vec<&Value> = object["costs"].as_array().expect("a list").iter().map(|c| &c["part"]).collect();
     assert_eq!(parts, ["whole scene", "spheres"]);
     assert!(!table.contains("planes"), "{table}");

@@ -179,6 +179,17 @@ fn compare_counts_the_rays_of_the_tiles_that_each_strategy_cuts() {
 }
 
 #[test]
+fn compare_does_not_count_adaptive_samples() {
+    let folder = folder();
+    let arguments = "compare --size 8x8 --antialiasing 2 --adaptive on --strategy sequential --json a.json";
+    let table = rayweave(folder.path(), arguments).expect_success();
+    assert!(table.contains("antialiasing 2 (adaptive)") && !table.contains("/px"), "{table}");
+    let object = json(&folder.path().join("a.json"));
+    assert_eq!(object["adaptive"], true);
+    assert_eq!(object["results"][0].get("primary_rays"), Some(&Value::Null));
+}
+
+#[test]
 fn compare_says_how_the_picture_is_computed() {
     let folder = folder();
     let run = |options: &str| {
@@ -230,7 +241,7 @@ fn triangles_without_area_are_told() {
     let folder = folder();
     let text = "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\nup = [0, 1, 0]\nfocal_length = 1.0\n\
                 screen_width = 1.0\n[material.grey]\ncolor = [0.5, 0.5, 0.5]\n\
-                [[mesh]]\nfile = \"mesh.obj\"\nmaterial = \"grey\"\n";
+                [[mesh]]\npath = \"mesh.obj\"\nmaterial = \"grey\"\n";
     fs::write(folder.path().join("mesh.toml"), text).expect("written");
     let run = |faces: &str| {
         let mesh = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\n{faces}");

@@ -2,7 +2,7 @@
 
 use rayweave_core::{Area, Tile, Work};
 use std::fmt;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::thread::{self, ThreadId};
 
@@ -113,8 +113,8 @@ impl Record {
     }
 }
 
-/// What a tile costs, by its area.
-pub type Cost<'a> = dyn Fn(Area) -> u64 + Sync + 'a;
+/// What a tile costs, by its area; `None` if that does not tell.
+pub type Cost<'a> = dyn Fn(Area) -> Option<u64> + Sync + 'a;
 
 /// Adds up what the tiles cost that the work inside completes: of any number of tiles a single sum. An addition for
 /// each tile is little, but more than nothing: not for timed runs.
@@ -122,26 +122,31 @@ pub struct Tally<'a> {
     work: &'a dyn Work,
     cost: &'a Cost<'a>,
     sum: AtomicU64,
+    /// Whether the cost of a tile was unknown.
+    unknown: AtomicBool,
 }
 
 impl<'a> Tally<'a> {
     /// Adds up what is rendered of `work`.
     #[must_use]
     pub fn new(work: &'a dyn Work, cost: &'a Cost<'a>) -> Self {
-        Self { work, cost, sum: AtomicU64::new(0) }
+        Self { work, cost, sum: AtomicU64::new(0), unknown: AtomicBool::new(false) }
     }
 
-    /// The sum.
+    /// The sum, unless the cost of a tile was unknown.
     #[must_use]
-    pub fn finish(self) -> u64 {
-        self.sum.into_inner()
+    pub fn finish(self) -> Option<u64> {
+        (!self.unknown.into_inner()).then_some(self.sum.into_inner())
     }
 }
 
 impl Work for Tally<'_> {
     fn render(&self, tile: &mut Tile<'_>) {
         self.work.render(tile);
-        self.sum.fetch_add((self.cost)(tile.area()), Ordering::Relaxed);
+        match (self.cost)(tile.area()) {
+            Some(cost) => drop(self.sum.fetch_add(cost, Ordering::Relaxed)),
+            None => self.unknown.store(true, Ordering::Relaxed),
+        }
     }
 }
 
@@ -208,7 +213,7 @@ mod tests {
     /// Catches a tile that is not counted, or counted by something other than its own area.
     #[test]
     fn costs_of_all_threads_add_up() {
-        let cost = |area: Area| u64::from(100 * area.x + 10 * area.y + area.width);
+        let cost = |area: Area| (area.x < 4).then(|| u64::from(100 * area.x + 10 * area.y + area.width));
         let tally = Tally::new(&Black, &cost);
         tally.render(&mut Tile::pixel(3, 2, &mut [1.0; 3]));
         thread::scope(|scope| {
@@ -217,6 +222,10 @@ mod tests {
                 scope.spawn(move || tally.render(&mut Tile::row(1, y, &mut [[1.0; 3]; 5])));
             }
         });
-        assert_eq!(tally.finish(), 321 + 105 + 115);
+        assert_eq!(tally.finish(), Some(321 + 105 + 115));
+
+        let tally = Tally::new(&Black, &cost);
+        [3, 4, 3].into_iter().for_each(|x| tally.render(&mut Tile::pixel(x, 2, &mut [1.0; 3])));
+        assert_eq!(tally.finish(), None);
     }
 }

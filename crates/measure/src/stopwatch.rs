@@ -33,7 +33,8 @@ impl<'a> Stopwatch<'a> {
     }
 
     /// Counts the primary rays of the warm-up, by those of each tile that a strategy cuts; the timed renderings stay
-    /// as they are. Of the whole picture as one tile `rays` tells how many are needed.
+    /// as they are. Of the whole picture as one tile `rays` tells how many are needed. Nothing is counted if it does
+    /// not know of one of these.
     #[must_use]
     pub fn counting(self, rays: &'a Cost<'a>) -> Self {
         Self { rays: Some(rays), ..self }
@@ -69,9 +70,11 @@ impl Executor for Stopwatch<'_> {
         let Some(rays) = self.rays else { return Ok((self.render(entry)?, None)) };
         let tally = Tally::new(self.work, rays);
         let rendering = self.render_work(&tally, entry)?;
-        let primary = tally.finish();
         let needed = rays(Area { x: 0, y: 0, width: self.image.width(), height: self.image.height() });
-        Ok((rendering, Some(Rays { primary, redundant: primary.saturating_sub(needed) })))
+        let counted = tally.finish().zip(needed);
+        let rays =
+            counted.map(|(primary, needed)| Rays { primary, redundant: primary.saturating_sub(needed) });
+        Ok((rendering, rays))
     }
 
     fn elapsed(&self) -> Duration {
@@ -174,7 +177,7 @@ mod tests {
         let asked = AtomicUsize::new(0);
         let rays = |area: Area| {
             asked.fetch_add(1, Ordering::Relaxed);
-            u64::from((area.width + 1) * (area.height + 1))
+            Some(u64::from((area.width + 1) * (area.height + 1)))
         };
         let plan = NonZeroU32::new(100).expect("not 0");
         let entry = Entry { strategy: &ByTwos, threads: NonZeroUsize::MIN };

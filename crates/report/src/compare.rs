@@ -24,6 +24,8 @@ pub struct Subject {
     pub antialiasing: u32,
     /// Where the samples lie.
     pub sampling: Sampling,
+    /// Whether those of a lattice are traced only where pixels differ.
+    pub adaptive: bool,
     /// Of the tracer.
     pub formulas: Formulas,
     /// Of the numbers that the tracer computes with: "f32" or "f64".
@@ -64,7 +66,8 @@ impl Report<'_> {
     /// Where a row has no figures, because it failed or gave a wrong picture, they are null.
     ///
     /// Of how the picture was computed `lanes`, `share_samples` and `search` tell; of each result `primary_rays`
-    /// those that were traced, and `redundant_rays` how many of them a single tile would have done without.
+    /// those that were traced, and `redundant_rays` how many of them a single tile would have done without. These two
+    /// are null for adaptive samples, which are not counted.
     #[must_use]
     pub fn json(&self) -> String {
         json::text(self)

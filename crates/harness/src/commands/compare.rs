@@ -91,6 +91,7 @@ fn subject(input: &Input, execution: Execution, tile: NonZeroU32) -> Subject {
         tile: tile.get(),
         antialiasing: input.scene.render.antialiasing,
         sampling: input.scene.render.sampling,
+        adaptive: input.scene.render.adaptive,
         formulas,
         precision: precision.to_string(),
         lanes: lanes.count(precision),

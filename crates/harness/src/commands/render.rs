@@ -7,7 +7,7 @@ use crate::picture::Format;
 use crate::progress::Watched;
 use crate::{Outcome, print};
 use clap::Args;
-use rayweave_core::{Plan, Strategy, ThreadsStart, Work};
+use rayweave_core::{Analysis, Execution, Plan, Strategy, ThreadsStart, Work};
 use rayweave_measure::machine::Machine;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -28,6 +28,9 @@ pub struct Arguments {
     threads: Option<NonZeroUsize>,
     #[command(flatten)]
     tile: TileOption,
+    /// Say what of the tracer the scene uses, and how long it took to prepare
+    #[arg(long)]
+    explain: bool,
     #[command(flatten)]
     options: SceneOptions,
 }
@@ -45,7 +48,9 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     // What has no threads of its own computes on one, whatever was asked for.
     let computing = if strategy.threads_start() == ThreadsStart::Never { NonZeroUsize::MIN } else { threads };
     let mut picture = input.picture()?;
+    let begin = Instant::now();
     let work = input.work(input.width, input.height)?;
+    let preparing = begin.elapsed().as_secs_f64();
     let mut renderer = strategy.prepare(plan).map_err(|e| e.to_string())?;
     let watched = Watched::new(&*work, picture.pixels().len() as u64);
     // Watched only where somebody sees it: the bar takes its share of the time.
@@ -57,8 +62,9 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     result.map_err(|e| e.to_string())?;
 
     file.finish(&format.encode(&picture)?)?;
+    let explanation = if arguments.explain { explain(&input, preparing)? } else { String::new() };
     print(&format!(
-        "{}\n{}, threads: {computing}, {seconds:.6} s, digest {}\n{}\nwritten to {}\n",
+        "{}\n{}, threads: {computing}, {seconds:.6} s, digest {}\n{explanation}{}\nwritten to {}\n",
         input.describe(),
         strategy.name(),
         picture.digest().short(),
@@ -66,6 +72,18 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
         path.display(),
     ))?;
     Ok(Outcome::Held)
+}
+
+/// What of the tracer the scene uses; each line ends.
+fn explain(input: &Input, preparing: f64) -> Result<String, String> {
+    let analysis =
+        Analysis::of(&input.scene, &input.execution).map_err(|e| format!("{}: {e}", input.name))?;
+    let Execution { arithmetic, lanes, share_samples, .. } = input.execution;
+    let lanes = lanes.count(arithmetic.precision);
+    let samples = if share_samples { "shared by the pixels of a tile" } else { "each pixel's own" };
+    Ok(format!(
+        "{analysis}\npackets: {lanes} rays; samples: {samples}\nprepared in {preparing:.6} s, a tree's building included\n"
+    ))
 }
 
 /// In the working folder, named after the scene.

@@ -40,6 +40,7 @@ struct Line<'a> {
     search: &'a str,
     primary_rays: Option<u64>,
     redundant_rays: Option<u64>,
+    adaptive: bool,
 }
 
 pub(super) fn text(report: &Report<'_>) -> String {
@@ -92,5 +93,6 @@ fn line<'a>(report: &Report<'a>, row: &'a Row) -> Line<'a> {
         search: search(subject.search),
         primary_rays: row.rays.map(|rays| rays.primary),
         redundant_rays: row.rays.map(|rays| rays.redundant),
+        adaptive: subject.adaptive,
     }
 }

@@ -27,6 +27,7 @@ struct Object<'a> {
     lanes: usize,
     share_samples: bool,
     search: &'a str,
+    adaptive: bool,
     results: Vec<Result<'a>>,
 }
 
@@ -90,6 +91,7 @@ fn object<'a>(report: &Report<'a>) -> Object<'a> {
         lanes: subject.lanes,
         share_samples: subject.share_samples,
         search: search(subject.search),
+        adaptive: subject.adaptive,
         results: comparison.rows.iter().map(result).collect(),
     }
 }

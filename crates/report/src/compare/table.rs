@@ -66,6 +66,7 @@ fn measured(report: &Report<'_>) -> Vec<String> {
 fn heading(Report { subject, comparison, .. }: &Report<'_>) -> String {
     let rays = match (subject.antialiasing, subject.sampling) {
         (0, _) => "one ray a pixel".to_owned(),
+        (density, Sampling::Lattice) if subject.adaptive => format!("antialiasing {density} (adaptive)"),
         (density, Sampling::Lattice) => format!("antialiasing {density}"),
         (density, sampling) => format!("antialiasing {density} by {sampling}"),
     };
@@ -122,7 +123,7 @@ fn milliseconds(ns: f64) -> String {
 }
 
 /// A pixel, and how many more they are than what was needed.
-fn rays(subject: &Subject, Rays { primary, redundant }: Rays) -> String {
+pub(super) fn rays(subject: &Subject, Rays { primary, redundant }: Rays) -> String {
     let a_pixel = primary as f64 / (f64::from(subject.width) * f64::from(subject.height));
     let percent = redundant as f64 / primary.saturating_sub(redundant).max(1) as f64 * 100.0;
     let decimals = usize::from(percent < 100.0);
@@ -130,13 +131,14 @@ fn rays(subject: &Subject, Rays { primary, redundant }: Rays) -> String {
 }
 
 /// How the picture was computed, as far as that changes no bits.
-fn computed(subject: &Subject) -> String {
+pub(super) fn computed(subject: &Subject) -> String {
     let lanes = match subject.lanes {
         1 => "rays one by one".to_owned(),
         lanes => format!("{lanes} rays side by side"),
     };
     let samples = match (subject.antialiasing, subject.sampling) {
         (0, _) | (_, Sampling::Importance) => "no samples to share",
+        _ if subject.adaptive => "samples shared or interpolated",
         _ if subject.share_samples => "samples shared",
         _ => "samples not shared",
     };

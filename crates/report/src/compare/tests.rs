@@ -80,6 +80,7 @@ fn subject() -> Subject {
         tile: 32,
         antialiasing: 2,
         sampling: Sampling::Lattice,
+        adaptive: false,
         formulas: Formulas::Robust,
         precision: "f32".to_owned(),
         lanes: 8,
@@ -114,7 +115,7 @@ fn with_both(unshared: &Comparison, read: impl FnOnce(&BothReport<'_>) -> String
     })
 }
 
-/// Digests differ from version to version of the picture that they are made of.
+/// With the digests called by what their pictures are.
 fn without_digests(text: &str) -> String {
     text.replace(&digest(1.0).short(), "RIGHT").replace(&digest(0.5).short(), "WRONG")
 }
@@ -124,19 +125,21 @@ fn table_as_a_whole() {
     let text = with_report(&comparison(), |report| report.table());
     let expected = r#"room, 500 x 400 pixels, antialiasing 2, f32, tiles of 32; 2 interleaved rounds, digest RIGHT
 
-strategy              threads  median           speed-up  efficiency    serial  threads        identical
-                                   ms    [95 % interval]              fraction  start
-─────────────────────────────────────────────────────────────────────────────────────────────────────────
-sequential                  1    2000  1.00 [0.96, 1.06]       100 %         -  -              yes
-sequential (control)        1    2010  1.00 [0.96, 1.06]       100 %         -  -              yes
-pool                        2    1026  1.95 [1.91, 2.01]        97 %     0.026  before: 85 us  yes
-queue                       2       -                  -           -         -  in the time    NO
-many, "too" many         9000       -                  -           -         -  in the time    failed
+strategy              threads  median           speed-up  efficiency    serial           rays  threads        identical
+                                   ms    [95 % interval]              fraction                 start
+────────────────────────────────────────────────────────────────────────────────────────────────────────────────────────
+sequential                  1    2000  1.00 [0.96, 1.06]       100 %         -  4.4/px +9.5 %  -              yes
+sequential (control)        1    2010  1.00 [0.96, 1.06]       100 %         -  4.4/px +9.5 %  -              yes
+pool                        2    1026  1.95 [1.91, 2.01]        97 %     0.026  4.4/px +9.5 %  before: 85 us  yes
+queue                       2       -                  -           -         -  4.4/px +9.5 %  in the time    NO
+many, "too" many         9000       -                  -           -         -              -  in the time    failed
 
 queue, 2 threads: a wrong picture, digest WRONG, after 2 right ones
 many, "too" many, 9000 threads: failed after 0 samples: cannot start 9000 threads
+computed: 8 rays side by side, samples shared, search auto
 time: rendering alone, each picture verified outside of it; threads started "before" it are not in it.
 speed-up: time of sequential over the row's, median over the rounds. Serial fraction: Karp and Flatt.
+rays: primary ones, counted in the warm-up; + those that the whole picture as a single tile would not need.
 control: sequential over itself is 0.995 [0.955, 1.055]; as it should be, 1 is in it.
 That much is order and drift, of one thread; to tell rows apart compare their own intervals.
 machine: A CPU, 8 logical cores, 2 available, quota 1.5 cores, linux x86_64
@@ -238,7 +241,43 @@ fn csv_has_a_line_for_each_row() {
 
 #[test]
 fn both_tables_as_a_whole() {
-    let expected = r#"BOTH"#;
+    let expected = r#"room, 500 x 400 pixels, antialiasing 2, f32, tiles of 32; 2 interleaved rounds, digest RIGHT
+
+strategy              threads  median           speed-up  efficiency    serial           rays  threads        identical
+                                   ms    [95 % interval]              fraction                 start
+────────────────────────────────────────────────────────────────────────────────────────────────────────────────────────
+sequential                  1    2000  1.00 [0.96, 1.06]       100 %         -  4.4/px +9.5 %  -              yes
+sequential (control)        1    2010  1.00 [0.96, 1.06]       100 %         -  4.4/px +9.5 %  -              yes
+pool                        2    1026  1.95 [1.91, 2.01]        97 %     0.026  4.4/px +9.5 %  before: 85 us  yes
+queue                       2       -                  -           -         -  4.4/px +9.5 %  in the time    NO
+many, "too" many         9000       -                  -           -         -              -  in the time    failed
+
+queue, 2 threads: a wrong picture, digest WRONG, after 2 right ones
+many, "too" many, 9000 threads: failed after 0 samples: cannot start 9000 threads
+computed: 8 rays side by side, samples shared, search auto
+control: sequential over itself is 0.995 [0.955, 1.055]; as it should be, 1 is in it.
+That much is order and drift, of one thread; to tell rows apart compare their own intervals.
+
+room, 500 x 400 pixels, antialiasing 2, f32, tiles of 32; 2 interleaved rounds, digest RIGHT
+
+strategy              threads  median           speed-up  efficiency    serial            rays  threads  identical
+                                   ms    [95 % interval]              fraction                  start
+───────────────────────────────────────────────────────────────────────────────────────────────────────────────────
+sequential                  1    2000  1.00 [0.96, 1.06]       100 %         -  25.0/px +0.0 %  -        yes
+sequential (control)        1    2010  1.00 [0.96, 1.06]       100 %         -  25.0/px +0.0 %  -        yes
+pool                        2       -                  -           -         -  25.0/px +0.0 %  -        failed
+
+pool, 2 threads: failed after 2 samples: gone
+computed: 8 rays side by side, samples not shared, search auto
+control: sequential over itself is 0.995 [0.955, 1.055]; as it should be, 1 is in it.
+That much is order and drift, of one thread; to tell rows apart compare their own intervals.
+
+time: rendering alone, each picture verified outside of it; threads started "before" it are not in it.
+speed-up: time of sequential over the row's, median over the rounds. Serial fraction: Karp and Flatt.
+rays: primary ones, counted in the warm-up; + those that the whole picture as a single tile would not need.
+sharing: without it sequential takes 3.00 [3.00, 3.00] times as long; both tables are of the same rounds.
+machine: A CPU, 8 logical cores, 2 available, quota 1.5 cores, linux x86_64
+program: rustc 1.0, release build, commit 0123456789ab"#;
     let text = with_both(&unshared(), |report| report.table());
     assert_eq!(without_digests(&text), expected);
     assert!(notes_fit(&text), "{text}");
@@ -278,7 +317,7 @@ fn csv_of_both_is_one_table() {
     let alone = with_report(&comparison(), |report| report.csv());
     let rest = text.strip_prefix(&alone).expect("the lines with samples shared come first");
     assert_eq!(rest.lines().count(), 3);
-    assert!(rest.lines().all(|line| line.ends_with(",8,false,auto,5000000,0")), "{rest}");
+    assert!(rest.lines().all(|line| line.ends_with(",8,false,auto,5000000,0,false")), "{rest}");
 }
 
 #[test]
@@ -304,6 +343,9 @@ fn how_it_was_computed() {
     );
     let nothing = "computed: 8 rays side by side, no samples to share, search auto";
     assert_eq!(of(&|s| s.antialiasing = 0), nothing);
+    let adaptive = "computed: 8 rays side by side, samples shared or interpolated, search auto";
+    assert_eq!(of(&|s| (s.adaptive, s.share_samples) = (true, false)), adaptive);
+    assert_eq!(of(&|s| (s.adaptive, s.antialiasing) = (true, 0)), nothing);
     assert_eq!(of(&|s| s.sampling = Sampling::Importance), nothing);
     assert!(
         of(&|s| s.formulas = Formulas::Textbook)

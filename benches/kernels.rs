@@ -1,0 +1,130 @@
+//! `cargo bench --bench kernels`: what a ray costs, on one thread.
+//!
+//! A bench is called `scene/formulas/precision/lanes`, so criterion's filter picks:
+//! `cargo bench --bench kernels -- spheres/robust/f32`. The throughput is in rays, in `filter` in pixels; one
+//! over it is the time of one. What is in each group:
+//!
+//! | group | rays | a ray tries |
+//! |---|---|---|
+//! | `empty scene` | from the eye | nothing: the least a ray costs |
+//! | `planes`, `spheres`, `triangles`, `cylinders` | from the eye | each of 8 of the kind |
+//! | `shadows of spheres`, ... | these, and from each hit to a light | each of the 8 |
+//! | `tree of N spheres` | from the eye | what the tree leaves |
+//! | `tree of N mirrors` | these, and from each hit one in a direction of its own | what the tree leaves |
+//! | `filter` | of the scene `room.toml`, by kind of anti-aliasing | what the search leaves |
+//!
+//! A ray's time has the shading of its hit in it. Criterion measures one bench after the other, and the
+//! machine's clock and its other processes change meanwhile: for counts that repeat see `scripts/instructions`.
+
+use criterion::measurement::WallTime;
+use criterion::{
+    BenchmarkGroup, BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main,
+};
+use rayweave_benches::{Kind, Probe, Rays, scene};
+use rayweave_core::scene::RenderSettings;
+use rayweave_core::{Arithmetic, Execution, Formulas, Lanes, Precision, Sampling, Scene, Search};
+use std::time::Duration;
+
+fn kinds(criterion: &mut Criterion) {
+    let both = [Formulas::Robust, Formulas::Textbook];
+    bench_rays(criterion, "empty scene", &Probe::empty(), Rays::FromEye, &both, Search::Exhaustive);
+    for kind in Kind::ALL {
+        let probe = Probe::of(kind, Rays::FromEye);
+        bench_rays(criterion, kind.name(), &probe, Rays::FromEye, &both, Search::Exhaustive);
+    }
+}
+
+fn shadows(criterion: &mut Criterion) {
+    // No shadows of planes: they hide no light from what is on the eye's side of them, and no ray asks.
+    for kind in [Kind::Spheres, Kind::Triangles, Kind::Cylinders] {
+        let name = format!("shadows of {}", kind.name());
+        let probe = Probe::of(kind, Rays::AndShadows);
+        bench_rays(criterion, &name, &probe, Rays::AndShadows, &[Formulas::Robust], Search::Exhaustive);
+    }
+}
+
+fn trees(criterion: &mut Criterion) {
+    for (rays, what) in [(Rays::FromEye, "spheres"), (Rays::AndMirrored, "mirrors")] {
+        for count in [1_000, 100_000] {
+            let name = format!("tree of {count} {what}");
+            bench_rays(criterion, &name, &Probe::cloud(count, rays), rays, &[Formulas::Robust], Search::Auto);
+        }
+    }
+}
+
+fn bench_rays(
+    criterion: &mut Criterion,
+    name: &str,
+    probe: &Probe,
+    rays: Rays,
+    formulas: &[Formulas],
+    search: Search,
+) {
+    let mut group = group(criterion, name);
+    let count = if rays == Rays::FromEye { probe.pixels() } else { probe.pixels() + probe.hits() };
+    group.throughput(Throughput::Elements(count));
+    for &formulas in formulas {
+        for precision in [Precision::F32, Precision::F64] {
+            let arithmetic = Arithmetic { formulas, precision };
+            let execution = Execution { search, ..arithmetic.into() };
+            bench_lanes(&mut group, &format!("{formulas}/{precision}"), probe, execution);
+        }
+    }
+    group.finish();
+}
+
+fn filter(criterion: &mut Criterion) {
+    let mut group = group(criterion, "filter");
+    let room = scene("room.toml");
+    let lattice = RenderSettings { antialiasing: 2, sampling: Sampling::Lattice, ..room.render };
+    let one = RenderSettings { antialiasing: 0, ..lattice };
+    let adaptive = RenderSettings { adaptive: true, ..lattice };
+    let importance = RenderSettings { sampling: Sampling::Importance, ..lattice };
+    for (name, render, share_samples) in [
+        ("1 sample a pixel", one, true),
+        ("25 samples a pixel, shared", lattice, true),
+        ("25 samples a pixel, each its own", lattice, false),
+        ("25 samples a pixel, adaptive", adaptive, true),
+        ("13 samples a pixel, by importance", importance, true),
+    ] {
+        let scene = Scene { render, ..room.clone() };
+        let probe = Probe::whole(scene, 64, 32);
+        group.throughput(Throughput::Elements(probe.pixels()));
+        let execution = Execution { share_samples, ..Precision::F32.into() };
+        bench_lanes(&mut group, name, &probe, execution);
+    }
+    group.finish();
+}
+
+/// A group of short benches: there are many, and one rendering takes milliseconds at most.
+fn group<'a>(criterion: &'a mut Criterion, name: &str) -> BenchmarkGroup<'a, WallTime> {
+    let mut group = criterion.benchmark_group(name);
+    group.sampling_mode(SamplingMode::Flat).sample_size(10).nresamples(2000);
+    group.warm_up_time(Duration::from_millis(100)).measurement_time(Duration::from_millis(600));
+    group
+}
+
+/// One bench for each number of lanes.
+fn bench_lanes(group: &mut BenchmarkGroup<'_, WallTime>, name: &str, probe: &Probe, execution: Execution) {
+    let mut expected = None;
+    for lanes in Lanes::ALL {
+        let count = lanes.count(execution.arithmetic.precision);
+        let lanes_name = format!("{count} {}", if count == 1 { "lane" } else { "lanes" });
+        let mut image = probe.image();
+        let mut tiles = probe.tiles(&mut image);
+        // Made when it is needed first: a filter may have left the bench out.
+        let mut work = None;
+        group.bench_function(BenchmarkId::new(name, lanes_name), |bencher| {
+            let work = work.get_or_insert_with(|| probe.work(Execution { lanes, ..execution }));
+            bencher.iter(|| tiles.iter_mut().for_each(|tile| work.render(tile)));
+        });
+        // What was timed is looked at, outside of the timing: the lanes may not change a bit of it.
+        if work.is_some() {
+            let digest = image.digest();
+            assert_eq!(digest, *expected.get_or_insert(digest), "{name}: another picture");
+        }
+    }
+}
+
+criterion_group!(benches, kinds, shadows, trees, filter);
+criterion_main!(benches);

@@ -1,0 +1,209 @@
+//! Scenes to time rays in: what is there is of one kind, and how many rays a picture takes is known.
+
+use rayweave_core::scene::{Camera, Cylinder, Light, Material, Plane, RenderSettings, Sphere, Triangle};
+use rayweave_core::{Execution, Image, Precision, Scene, Tile, Work, tracer};
+use std::f64::consts::PI;
+use std::num::NonZeroU32;
+
+/// The side of a tile, as the command line's default.
+const TILE: NonZeroU32 = NonZeroU32::new(32).expect("not 0");
+
+/// A picture to be timed.
+pub struct Probe {
+    scene: Scene,
+    width: u32,
+    height: u32,
+    /// Of its tiles one in so many is rendered: rays are as close to each other as in the whole picture, at a part
+    /// of its time.
+    one_tile_in: usize,
+}
+
+/// What follows a ray from the eye.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rays {
+    /// Nothing: there is no light and no mirror.
+    FromEye,
+    /// One ray to a light, which is at the eye: whatever is seen faces it.
+    AndShadows,
+    /// One ray from a mirror.
+    AndMirrored,
+}
+
+/// A kind of primitive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Infinite planes.
+    Planes,
+    /// Spheres.
+    Spheres,
+    /// Triangles.
+    Triangles,
+    /// Open cylinders.
+    Cylinders,
+}
+
+impl Kind {
+    /// Each.
+    pub const ALL: [Self; 4] = [Self::Planes, Self::Spheres, Self::Triangles, Self::Cylinders];
+
+    /// In the names of the benches.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Planes => "planes",
+            Self::Spheres => "spheres",
+            Self::Triangles => "triangles",
+            Self::Cylinders => "cylinders",
+        }
+    }
+}
+
+impl Probe {
+    /// Nothing to be seen: what a ray costs that meets nothing.
+    #[must_use]
+    pub fn empty() -> Self {
+        Self::small(Rays::FromEye)
+    }
+
+    /// Eight primitives of one kind beside each other, which fill 40 to 85 % of the picture: planes all of it, as the
+    /// walls of a tunnel.
+    #[must_use]
+    pub fn of(kind: Kind, rays: Rays) -> Self {
+        let mut probe = Self::small(rays);
+        let scene = &mut probe.scene;
+        for number in 0..8 {
+            let (column, row) = (f64::from(number % 4), f64::from(number / 4));
+            let (x, y) = (2.0 * column - 3.0, 2.0 * row - 1.0);
+            match kind {
+                Kind::Planes => {
+                    let (sine, cosine) = (PI * (f64::from(number) + 0.5) / 4.0).sin_cos();
+                    let (point, normal) = ([3.0 * cosine, 3.0 * sine, 0.0], [cosine, sine, 0.0]);
+                    scene.planes.push(Plane { point: point.into(), normal: normal.into(), material: 0 });
+                }
+                Kind::Spheres => {
+                    scene.spheres.push(Sphere { center: [x, y, 0.0].into(), radius: 0.9, material: 0 });
+                }
+                Kind::Triangles => {
+                    let corners = [[x - 0.9, y - 0.9, 0.3], [x + 0.9, y - 0.9, -0.3], [x, y + 0.9, 0.0]];
+                    scene.triangles.push(Triangle { vertices: corners.map(Into::into), material: 0 });
+                }
+                Kind::Cylinders => {
+                    let (bottom, top) = ([x, y - 0.9, 0.0].into(), [x, y + 0.9, 0.0].into());
+                    scene.cylinders.push(Cylinder { bottom, top, radius: 0.9, material: 0 });
+                }
+            }
+        }
+        probe
+    }
+
+    /// Spheres anywhere in a cube, all of it in the picture. The more, the smaller: a ray meets as many of them
+    /// whatever their number.
+    #[must_use]
+    pub fn cloud(count: u32, rays: Rays) -> Self {
+        let mut scene = scene(26.0, 1.2, rays);
+        let mut numbers = Numbers(u64::from(count));
+        let mean_radius = 0.1 * (1e5 / f64::from(count)).sqrt();
+        scene.spheres.extend((0..count).map(|_| Sphere {
+            center: [(); 3].map(|()| numbers.between(-10.0, 10.0)).into(),
+            radius: mean_radius * numbers.between(0.5, 1.5),
+            material: 0,
+        }));
+        Self { scene, width: 800, height: 608, one_tile_in: 59 }
+    }
+
+    /// The whole picture of a scene.
+    #[must_use]
+    pub fn whole(scene: Scene, width: u32, height: u32) -> Self {
+        Self { scene, width, height, one_tile_in: 1 }
+    }
+
+    /// A picture that is 8 wide and 4 high at the origin, where nothing is yet.
+    fn small(rays: Rays) -> Self {
+        Self::whole(scene(8.0, 1.0, rays), 64, 32)
+    }
+
+    /// The work of rendering it.
+    ///
+    /// # Panics
+    ///
+    /// The scene is not sound.
+    #[must_use]
+    pub fn work(&self, execution: impl Into<Execution>) -> Box<dyn Work + Send> {
+        tracer(&self.scene, self.width, self.height, execution).unwrap_or_else(|e| panic!("{e}"))
+    }
+
+    /// A picture for it, without a number in it.
+    ///
+    /// # Panics
+    ///
+    /// No memory.
+    #[must_use]
+    pub fn image(&self) -> Image {
+        Image::filled(self.width, self.height, [f32::NAN; 3]).expect("a small picture")
+    }
+
+    /// The tiles that are rendered.
+    #[must_use]
+    pub fn tiles<'a>(&self, image: &'a mut Image) -> Vec<Tile<'a>> {
+        image.tiles(TILE).into_iter().step_by(self.one_tile_in).collect()
+    }
+
+    /// The number of pixels in these tiles.
+    #[must_use]
+    pub fn pixels(&self) -> u64 {
+        let mut image = self.image();
+        let areas = self.tiles(&mut image).iter().map(Tile::area).collect::<Vec<_>>();
+        areas.iter().map(|area| u64::from(area.width) * u64::from(area.height)).sum()
+    }
+
+    /// The number of pixels in these tiles whose first ray hits something. It is rendered once to count them.
+    #[must_use]
+    pub fn hits(&self) -> u64 {
+        let work = self.work(Precision::F32);
+        let mut image = self.image();
+        self.tiles(&mut image).iter_mut().for_each(|tile| work.render(tile));
+        // What is not rendered is NaN, what is not hit is black.
+        image.pixels().iter().filter(|[red, ..]| *red > 0.0).count() as u64
+    }
+}
+
+/// A scene so far empty, seen from `(0, 0, distance)` towards the origin.
+fn scene(distance: f64, screen_width: f64, rays: Rays) -> Scene {
+    let position = [0.0, 0.0, distance].into();
+    let mirror = if rays == Rays::AndMirrored { 0.5 } else { 0.0 };
+    let light = Light { position, color: [1.0; 3].into(), power: 1.0 };
+    Scene {
+        camera: Camera {
+            position,
+            look_at: [0.0; 3].into(),
+            up: [0.0, 1.0, 0.0].into(),
+            focal_length: 1.0,
+            screen_width,
+        },
+        render: RenderSettings {
+            max_reflections: if rays == Rays::AndMirrored { 1 } else { 0 },
+            antialiasing: 0,
+            ..RenderSettings::default()
+        },
+        lights: if rays == Rays::AndShadows { vec![light] } else { Vec::new() },
+        materials: vec![Material { reflection: mirror, ..Material::new([0.8; 3].into()) }],
+        planes: Vec::new(),
+        spheres: Vec::new(),
+        triangles: Vec::new(),
+        cylinders: Vec::new(),
+    }
+}
+
+/// Numbers that look random and are the same for the same seed: `SplitMix64` of Steele, Lea and Flood.
+struct Numbers(u64);
+
+impl Numbers {
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut bits = self.0;
+        bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        bits ^= bits >> 31;
+        low + (high - low) * ((bits >> 11) as f64 / 2f64.powi(53))
+    }
+}
