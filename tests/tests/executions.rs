@@ -3,7 +3,9 @@
 
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use rayweave_core::{Arithmetic, Formulas, Precision, Sampling, Scene};
+use rayweave_accuracy::metrics::Difference;
+use rayweave_core::scene::RenderSettings;
+use rayweave_core::{Arithmetic, Execution, Formulas, Lanes, Precision, Sampling, Scene};
 use rayweave_tests::picture::{difference, executions, in_tiles, plain};
 use rayweave_tests::{random_scene::random_scene, scenes};
 
@@ -66,6 +68,39 @@ fn every_density() {
             }
         }
     }
+}
+
+/// Catches a point that is interpolated in one tile and traced in another, where it is at an edge; and a lane whose
+/// trail is another one's.
+#[test]
+fn adaptive_samples() {
+    for antialiasing in [1, 2, 3, 5] {
+        let mut scene = scenes::named("room");
+        (scene.render.antialiasing, scene.render.adaptive) = (antialiasing, true);
+        for arithmetic in &ARITHMETICS[..3] {
+            executions_agree(&scene, (23, 17), *arithmetic, &format!("adaptive {antialiasing}"));
+        }
+    }
+}
+
+/// Catches points that are interpolated across an edge, a shadow's or a mirror's, and none that are at all.
+#[test]
+fn adaptive_samples_are_near_the_lattice() {
+    let mut scene = scenes::named("room");
+    scene.render.antialiasing = 4;
+    let execution = plain(ARITHMETICS[0]);
+    let execution = Execution { lanes: Lanes::default(), share_samples: true, ..execution };
+    let full = in_tiles(&scene, (200, 200), execution, 64);
+    scene.render.adaptive = true;
+    let found = in_tiles(&scene, (200, 200), execution, 64);
+    let psnr = Difference::between(&full, &found).psnr();
+    assert!(psnr >= 50.0, "{psnr} dB");
+    assert!(found != full, "nothing is interpolated");
+    // What is the same everywhere is interpolated without an error.
+    let empty = Scene { planes: vec![], spheres: vec![], triangles: vec![], cylinders: vec![], ..scene };
+    let picture = in_tiles(&empty, (20, 20), execution, 7);
+    let lattice = Scene { render: RenderSettings { adaptive: false, ..empty.render }, ..empty };
+    assert!(picture == in_tiles(&lattice, (20, 20), execution, 7));
 }
 
 /// Catches the same in pictures that are smaller than a packet, a block, or a row of one.

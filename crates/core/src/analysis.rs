@@ -109,3 +109,49 @@ impl fmt::Display for Analysis {
         write!(f, "lights: {useful} of {all} can light what is seen; {hidden}")
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::precision::Precision;
+    use crate::scene::{Camera, Light, Material, Plane, RenderSettings, Sphere};
+    use glam::DVec3;
+
+    /// A floor, spheres on it, a light above, one below and one without power.
+    fn scene(spheres: usize, reflection: f64) -> Scene {
+        let light = |y, power| Light { position: DVec3::new(0.0, y, 0.0), color: DVec3::ONE, power };
+        let sphere = |i| Sphere { center: DVec3::new(f64::from(i), 1.0, 0.0), radius: 0.4, material: 0 };
+        Scene {
+            camera: Camera {
+                position: DVec3::new(0.0, 1.0, 9.0),
+                look_at: DVec3::Y,
+                up: DVec3::Y,
+                focal_length: 1.0,
+                screen_width: 1.0,
+            },
+            render: RenderSettings::default(),
+            materials: vec![Material { reflection, ..Material::new(DVec3::ONE) }],
+            lights: vec![light(5.0, 1.0), light(-5.0, 1.0), light(5.0, 0.0)],
+            planes: vec![Plane { point: DVec3::ZERO, normal: DVec3::Y, material: 0 }],
+            spheres: (0..spheres as u32).map(sphere).collect(),
+            triangles: Vec::new(),
+            cylinders: Vec::new(),
+        }
+    }
+
+    fn analysis(spheres: usize, reflection: f64, search: Search) -> Analysis {
+        let execution = Execution { search, ..Execution::from(Precision::F32) };
+        Analysis::of(&scene(spheres, reflection), &execution).expect("a sound scene")
+    }
+
+    /// Catches a light, a plane, a mirror or a tree that is used though nothing needs it, or the other way around.
+    #[test]
+    fn what_is_not_needed_is_left_out() {
+        let few = analysis(3, 0.0, Search::Auto);
+        assert_eq!((few.primitives, few.bounces, few.lights), ([1, 3, 0, 0], 0, (3, 1)));
+        assert_eq!((few.hiding_planes.as_slice(), few.search), (&[0][..], Found::Cones));
+        assert_eq!(analysis(3, 0.5, Search::Auto).bounces, 4);
+        assert!(matches!(analysis(100, 0.0, Search::Auto).search, Found::Tree { leaves } if leaves > 10));
+        assert_eq!(analysis(100, 0.0, Search::Exhaustive).search, Found::Each);
+    }
+}

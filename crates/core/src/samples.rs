@@ -41,16 +41,17 @@ impl<S: Scalar> Places<S> {
 #[derive(Debug, Default)]
 pub(crate) struct Colors<S> {
     pub(crate) channels: [Vec<S>; 3],
-    /// What each saw: see [`Traced`].
+    /// What each saw, see [`Traced`]; none if nobody asks.
     pub(crate) trails: Vec<u32>,
 }
 
 impl<S: Scalar> Colors<S> {
-    pub(crate) fn resize(&mut self, count: usize) {
+    /// Room for so many; for their trails too if somebody asks for them.
+    pub(crate) fn resize(&mut self, count: usize, trails: bool) {
         for channel in &mut self.channels {
             channel.resize(count, S::literal(0.0));
         }
-        self.trails.resize(count, 0);
+        self.trails.resize(if trails { count } else { 0 }, 0);
     }
 
     pub(crate) fn get(&self, i: usize) -> Vector<S> {
@@ -64,6 +65,8 @@ impl<S: Scalar> Colors<S> {
         color.x.store(&mut red[first..]);
         color.y.store(&mut green[first..]);
         color.z.store(&mut blue[first..]);
-        L::store_index(trail, &mut self.trails[first..]);
+        if let Some(trails) = self.trails.get_mut(first..).filter(|trails| !trails.is_empty()) {
+            L::store_index(trail, trails);
+        }
     }
 }

@@ -157,7 +157,7 @@ impl<L: Lane, F: Family> Tracer<L, F> {
         (right, down): (L::Scalar, L::Scalar),
         colors: &mut Colors<L::Scalar>,
     ) {
-        colors.resize(places.len().next_multiple_of(L::LANES));
+        colors.resize(places.len().next_multiple_of(L::LANES), self.adaptive);
         for first in (0..places.len()).step_by(L::LANES) {
             let (aside, below) = places.load::<L>(first);
             let ray = self.camera.ray(L::splat(right) + aside, L::splat(down) + below);
