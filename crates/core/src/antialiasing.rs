@@ -11,6 +11,8 @@ use crate::vector::Vector;
 #[derive(Clone, Debug)]
 pub(crate) struct Filter<S> {
     rows: Vec<Row<S>>,
+    /// Right and down of all samples.
+    places: Vec<(S, S)>,
     /// The unit of places: so many half steps are half a pixel.
     density: u32,
     /// Of each sample across a pixel, if the samples are on a square lattice.
@@ -44,6 +46,11 @@ impl<S: Scalar> Filter<S> {
         }
     }
 
+    fn of_rows(rows: Vec<Row<S>>, density: u32, lattice: Option<Vec<S>>) -> Self {
+        let places = rows.iter().flat_map(|row| row.samples.iter().map(|sample| (sample.right, row.down)));
+        Self { places: places.collect(), rows, density, lattice }
+    }
+
     /// Half steps from a pixel's edge to its centre.
     pub(crate) fn density(&self) -> u32 {
         self.density
@@ -55,14 +62,9 @@ impl<S: Scalar> Filter<S> {
         self.lattice.as_deref()
     }
 
-    /// Samples a pixel.
-    pub(crate) fn len(&self) -> usize {
-        self.rows.iter().map(|row| row.samples.len()).sum()
-    }
-
     /// Right and down of each sample, row by row.
-    pub(crate) fn places(&self) -> impl Iterator<Item = (S, S)> {
-        self.rows.iter().flat_map(|row| row.samples.iter().map(|sample| (sample.right, row.down)))
+    pub(crate) fn places(&self) -> &[(S, S)] {
+        &self.places
     }
 
     /// The pixel whose samples' colours begin at number `first`.
@@ -70,6 +72,9 @@ impl<S: Scalar> Filter<S> {
     /// Each row of samples is summed from the left, then the rows from the top: a fixed order, and
     /// one in which a row's sum serves every pixel that needs it.
     pub(crate) fn sum(&self, colors: &Colors<S>, first: usize) -> Rgb {
+        if self.places.len() == 1 {
+            return colors.get(first).to_array().map(S::to_f32);
+        }
         let mut i = first;
         let mut color = Vector::zero();
         for row in &self.rows {
@@ -97,7 +102,7 @@ impl<S: Scalar> Filter<S> {
         let row =
             |sample: &Sample<S>| Row { down: sample.right, weight: sample.weight, samples: samples.clone() };
         let lattice = samples.iter().map(|sample| sample.weight).collect();
-        Self { rows: samples.iter().map(row).collect(), density, lattice: Some(lattice) }
+        Self::of_rows(samples.iter().map(row).collect(), density, Some(lattice))
     }
 
     /// `count` samples of equal weight, as dense as the filter is high (filter importance sampling:
@@ -122,7 +127,7 @@ impl<S: Scalar> Filter<S> {
                 samples: vec![Sample { right: half_pixels(column), weight: S::from_f64(1.0) }],
             }
         };
-        Self { rows: (0..u64::from(count)).map(row).collect(), density: 1, lattice: None }
+        Self::of_rows((0..u64::from(count)).map(row).collect(), 1, None)
     }
 }
 

@@ -18,7 +18,7 @@ use crate::tree::{Bounds, Tree};
 use crate::vector::Vector;
 use std::ops::Range;
 
-/// From so many bounded primitives on a tree is faster than trying each (measured: METHODOLOGY.md).
+/// From so many bounded primitives on a tree is faster than trying each (see METHODOLOGY.md).
 const TREE_PAYS: usize = 12;
 
 /// The primitives by kind. A primitive's number counts through planes, spheres, triangles and cylinders, each in

@@ -49,7 +49,9 @@ mod tests {
                 for (x, y) in (0..width).flat_map(|x| (0..height).map(move |y| (x, y))) {
                     // Whole numbers of half steps, of which a pixel has `2 s`.
                     let centre = |pixel: u32| i64::from(2 * density * pixel);
-                    places.extend(filter.places().map(|(a, b)| (centre(x) + a as i64, centre(y) + b as i64)));
+                    places.extend(
+                        filter.places().iter().map(|&(a, b)| (centre(x) + a as i64, centre(y) + b as i64)),
+                    );
                 }
                 let found = primary_rays(width, height, &settings, true);
                 assert_eq!(found, Some(places.len() as u64), "{width} x {height} at {density}");

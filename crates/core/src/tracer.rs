@@ -176,23 +176,23 @@ impl<L: Lane, F: Family> Tracer<L, F> {
     /// Every pixel with samples of its own.
     fn render_alone(&self, tile: &mut Tile<'_>) {
         let area = tile.area();
-        let samples = self.filter.len();
-        let mut pixels = Vec::new();
-        for_each_in_blocks(area.width, area.height, |x, y| pixels.push((area.x + x, area.y + y)));
+        let rights: Vec<L::Scalar> = (0..area.width).map(|x| self.centre(area.x + x, self.width)).collect();
+        let downs: Vec<L::Scalar> = (0..area.height).map(|y| self.centre(area.y + y, self.height)).collect();
+        let mut pixels = Vec::with_capacity(rights.len() * downs.len());
+        for_each_in_blocks(area.width, area.height, |x, y| pixels.push((x as usize, y as usize)));
+        let samples = self.filter.places();
         let (mut places, mut colors) = (Places::default(), Colors::default());
         let zero = L::Scalar::literal(0.0);
-        for pixels in pixels.chunks((BATCH / samples).max(1)) {
+        for pixels in pixels.chunks((BATCH / samples.len()).max(1)) {
             places.clear();
             for &(x, y) in pixels {
-                let (right, down) = (self.centre(x, self.width), self.centre(y, self.height));
-                for (aside, below) in self.filter.places() {
-                    places.push(right + aside, down + below);
+                for &(aside, below) in samples {
+                    places.push(rights[x] + aside, downs[y] + below);
                 }
             }
             self.trace(&places, (zero, zero), &mut colors);
             for (i, &(x, y)) in pixels.iter().enumerate() {
-                tile.row_mut((y - area.y) as usize)[(x - area.x) as usize] =
-                    self.filter.sum(&colors, i * samples);
+                tile.row_mut(y)[x] = self.filter.sum(&colors, i * samples.len());
             }
         }
     }
