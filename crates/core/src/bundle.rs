@@ -72,7 +72,7 @@ impl<S: Scalar> Cone<S> {
     #[inline(always)]
     pub(crate) fn may_meet<L: Lane<Scalar = S>>(&self, direction: Vector<L>, length: L) -> L::Mask {
         let cosine = Vector::splat(self.axis).dot(direction) + L::splat(self.widening) * length;
-        // The other way around a NaN would be met by nothing.
-        L::splat(self.cosine).le(cosine)
+        // Asked this way, numbers that are none rule nothing out.
+        !cosine.lt(L::splat(self.cosine))
     }
 }

@@ -153,7 +153,8 @@ impl<S: Scalar, F: Family> World<S, F> {
         let start_reach = start.sum_of_magnitudes();
         let facing = at.normal.dot(ray.direction);
         let mut color = finish.color * finish.ambient;
-        for (number, light) in (1..).zip(&self.lights) {
+        // Numbered from 2: 1 stands for a hit in a trail.
+        for (number, light) in (2..).zip(&self.lights) {
             // Lit from where shadow rays start, which is on the viewer's side for certain: a light
             // in the surface itself then stands below it, and no rounding makes it shine.
             let toward = Vector::splat(light.position) - start;

@@ -22,7 +22,7 @@ pub struct Execution {
     pub arithmetic: Arithmetic,
     /// Rays side by side.
     pub lanes: Lanes,
-    /// Whether a lattice point that several pixels of a tile need is traced once.
+    /// Whether a lattice point that several pixels of a tile need is traced once; of adaptive samples it always is.
     pub share_samples: bool,
     /// Whether a ray tries what it cannot meet.
     pub search: Search,
@@ -86,7 +86,8 @@ impl<A: Into<Arithmetic>> From<A> for Execution {
     }
 }
 
-/// The work of rendering `scene` into a picture of `width` x `height` pixels.
+/// The work of rendering `scene` into a picture of `width` x `height` pixels, up to the 65,535 of a scene file each: places in
+/// larger ones are not exact.
 ///
 /// # Errors
 ///

@@ -221,8 +221,8 @@ impl<L: Lane> Slabs<L> {
         let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
         let farthest = origin[0].abs().max(origin[1].abs()).max(origin[2].abs());
         let margin = (farthest + L::splat(reach)) * L::literal(MARGIN * L::Scalar::ROUNDOFF);
-        // A direction across the axis is turned by less than any box can tell: no infinity meets a zero.
-        let least = |backward: bool| L::literal(if backward { -1e-30 } else { 1e-30 });
+        // A direction across the axis is turned, by less than the margin tells: no infinity meets a zero.
+        let least = direction[heading.order[2]].abs() * L::literal(L::Scalar::ROUNDOFF * L::Scalar::ROUNDOFF);
         Self {
             sides: heading.order.map(|axis| {
                 let (low, high) = (axis, 3 + axis);
@@ -233,8 +233,9 @@ impl<L: Lane> Slabs<L> {
                 if heading.backward[axis] { [below, above] } else { [above, below] }
             }),
             inverse: heading.order.map(|axis| {
-                let (d, least) = (direction[axis], least(heading.backward[axis]));
-                L::literal(1.0) / L::select(d.abs().lt(least.abs()), least, d)
+                let d = direction[axis];
+                let turned = if heading.backward[axis] { -least } else { least };
+                L::literal(1.0) / L::select(d.abs().lt(least), turned, d)
             }),
         }
     }

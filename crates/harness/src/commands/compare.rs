@@ -7,7 +7,8 @@ use crate::options::{
 use crate::output::{PendingFile, distinct_files};
 use crate::{Outcome, print, progress};
 use clap::Args;
-use rayweave_core::{Area, Arithmetic, Execution, Strategy, Work, primary_rays};
+use rayweave_core::scene::RenderSettings;
+use rayweave_core::{Area, Arithmetic, Execution, Sampling, Strategy, Work, primary_rays};
 use rayweave_measure::Protocol;
 use rayweave_measure::compare::{Comparison, Entry, Executor};
 use rayweave_measure::machine::Machine;
@@ -56,6 +57,12 @@ pub fn run(scene: Option<&Path>, options: &Options) -> Result<Outcome, String> {
         SharingOption::Both => &[true, false],
     };
     let input = Input::load_sharing(scene, &options.scene_options, ways[0])?;
+    let RenderSettings { antialiasing, sampling, adaptive, .. } = input.scene.render;
+    if ways.len() > 1 && (antialiasing == 0 || sampling == Sampling::Importance || adaptive) {
+        return Err(
+            "--share-samples both: without a lattice, or with an adaptive one, there is no choice".to_owned()
+        );
+    }
     let tile = options.tile.of(input.width, input.height)?;
     let ways: Vec<Execution> =
         ways.iter().map(|&share_samples| Execution { share_samples, ..input.execution }).collect();
