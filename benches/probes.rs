@@ -2,6 +2,7 @@
 
 use rayweave_core::scene::{Camera, Cylinder, Light, Material, Plane, RenderSettings, Sphere, Triangle};
 use rayweave_core::{Execution, Image, Precision, Scene, Tile, Work, tracer};
+use rayweave_measure::random::SplitMix64;
 use std::f64::consts::PI;
 use std::num::NonZeroU32;
 
@@ -101,11 +102,11 @@ impl Probe {
     #[must_use]
     pub fn cloud(count: u32, rays: Rays) -> Self {
         let mut scene = scene(26.0, 1.2, rays);
-        let mut numbers = Numbers(u64::from(count));
+        let mut random = SplitMix64::new(u64::from(count));
         let mean_radius = 0.1 * (1e5 / f64::from(count)).sqrt();
         scene.spheres.extend((0..count).map(|_| Sphere {
-            center: [(); 3].map(|()| numbers.between(-10.0, 10.0)).into(),
-            radius: mean_radius * numbers.between(0.5, 1.5),
+            center: [(); 3].map(|()| between(&mut random, -10.0, 10.0)).into(),
+            radius: mean_radius * between(&mut random, 0.5, 1.5),
             material: 0,
         }));
         Self { scene, width: 800, height: 608, one_tile_in: 59 }
@@ -194,16 +195,6 @@ fn scene(distance: f64, screen_width: f64, rays: Rays) -> Scene {
     }
 }
 
-/// Numbers that look random and are the same for the same seed: `SplitMix64` of Steele, Lea and Flood.
-struct Numbers(u64);
-
-impl Numbers {
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut bits = self.0;
-        bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        bits ^= bits >> 31;
-        low + (high - low) * ((bits >> 11) as f64 / 2f64.powi(53))
-    }
+fn between(random: &mut SplitMix64, low: f64, high: f64) -> f64 {
+    low + (high - low) * random.fraction()
 }

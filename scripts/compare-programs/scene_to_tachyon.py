@@ -6,12 +6,10 @@
 The number of samples is an option of tachyon. Its camera is left-handed: z changes its sign.
 """
 
-import os
 import sys
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+from converter import convert
 from geometry import frame, times
-from scene_to_text import SceneError, read_scene
 
 
 def point(values):
@@ -60,19 +58,5 @@ BACKGROUND {row(background)}
     yield "END_SCENE\n"
 
 
-def main(arguments):
-    if not 1 <= len(arguments) <= 2 or arguments[0].startswith("-"):
-        print(__doc__, file=sys.stderr)
-        return 2
-    try:
-        parts = read_scene(arguments[0])
-        width, height = map(int, arguments[1].split("x")) if arguments[1:] else parts["image"]
-        sys.stdout.writelines(scene_to_tachyon(parts, width, height))
-    except (OSError, SceneError, ValueError) as error:
-        print(f"scene_to_tachyon.py: {arguments[0]}: {error}", file=sys.stderr)
-        return 1
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(convert(sys.argv, __doc__, scene_to_tachyon))

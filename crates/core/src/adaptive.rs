@@ -5,7 +5,7 @@
 
 use crate::lane::Scalar;
 use crate::lattice::LatticeSums;
-use crate::samples::{Colors, Places};
+use crate::samples::{Colors, Places, half_steps};
 use crate::vector::Vector;
 
 /// The centres of a row of pixels and of one more on either side.
@@ -37,7 +37,7 @@ impl<S: Scalar> Bands<S> {
     pub(crate) fn place_centres(&self, places: &mut Places<S>) {
         places.clear();
         for centre in 0..self.count {
-            places.push(half_steps(centre * self.density), S::literal(0.0));
+            places.push(half_steps((centre * self.density) as i64), S::literal(0.0));
         }
     }
 
@@ -77,7 +77,7 @@ impl<S: Scalar> Bands<S> {
                 match known {
                     Some(color) => sums.set(column, row, color),
                     None if exists => {
-                        places.push(half_steps(column), half_steps(row));
+                        places.push(half_steps(column as i64), half_steps(row as i64));
                         self.traced.push((column, row));
                     }
                     None => {}
@@ -102,8 +102,4 @@ fn between<S: Scalar>(centres: &Centres<S>, left: usize, right: usize, share: S)
 
 fn mix<S: Scalar>(from: Vector<S>, to: Vector<S>, share: S) -> Vector<S> {
     from + (to - from) * share
-}
-
-fn half_steps<S: Scalar>(steps: usize) -> S {
-    S::from_f64(2.0 * steps as f64)
 }

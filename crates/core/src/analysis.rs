@@ -1,10 +1,10 @@
 //! What a scene needs: found out once, before it is rendered.
 
+use crate::execution::{Execution, Search};
 use crate::formulas::{Compiled, Family};
 use crate::lane::Scalar;
 use crate::scene::{Scene, SceneError};
 use crate::trace::World;
-use crate::tracer::{Execution, Search};
 use std::fmt;
 
 /// What of the tracer a picture of a scene uses; what it does not use costs it nothing.

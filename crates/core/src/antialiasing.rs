@@ -4,7 +4,7 @@
 use crate::image::Rgb;
 use crate::lane::Scalar;
 use crate::samples::Colors;
-use crate::scene::{RenderSettings, Sampling};
+use crate::scene::RenderSettings;
 use crate::vector::Vector;
 
 /// The samples of a pixel, row by row: the same around every pixel's centre.
@@ -40,9 +40,10 @@ pub(crate) struct Sample<S> {
 
 impl<S: Scalar> Filter<S> {
     pub(crate) fn new(settings: &RenderSettings) -> Self {
-        match (settings.antialiasing, settings.sampling) {
-            (density @ 1.., Sampling::Lattice) => Self::lattice(density),
-            _ => Self::importance(settings.rays_per_pixel()),
+        if settings.has_lattice() {
+            Self::lattice(settings.antialiasing)
+        } else {
+            Self::importance(settings.rays_per_pixel())
         }
     }
 
@@ -164,6 +165,7 @@ fn filter_quantile(share: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Sampling;
 
     fn importance(count: u32) -> Vec<(f64, f64)> {
         let filter = Filter::<f64>::importance(count);

@@ -6,6 +6,7 @@
 
 use crate::lane::{Lane, Scalar};
 use crate::scene::Scene;
+use crate::shapes::MARGIN;
 use crate::vector::Vector;
 use glam::DVec3;
 
@@ -25,9 +26,6 @@ pub(crate) struct Cone<S> {
     /// What a unit of a ray's length adds: its end is known the less exactly, the farther it is.
     widening: S,
 }
-
-/// Roundings by which a cone is wider than its primitive; the shapes' own errors are at most 31, see `tree`.
-const MARGIN: f64 = 64.0;
 
 impl<S: Scalar> Bundle<S> {
     /// The cones of `scene`'s primitives, seen from `point`.

@@ -1,11 +1,11 @@
 //! Single rays through the kernel that renders, for tests and for whoever studies it.
 
+use crate::execution::Search;
 use crate::formulas::{Arithmetic, Compiled, Family};
 use crate::lane::Scalar;
 use crate::ray::Ray;
 use crate::scene::{Scene, SceneError, near_one};
 use crate::trace::World;
-use crate::tracer::Search;
 use crate::vector::Vector;
 use glam::DVec3;
 

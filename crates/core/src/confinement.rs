@@ -7,6 +7,7 @@
 //! in its shadow: so this is not only a saving but part of what the robust formulas mean, in every search.
 
 use crate::scene::{Plane, Scene, unit};
+use crate::shapes::MARGIN;
 use glam::DVec3;
 
 /// On which side of a plane something is.
@@ -42,7 +43,7 @@ pub(crate) fn hiding_planes(
 fn side(plane: &Plane, point: DVec3, roundoff: f64) -> Side {
     let normal = unit(plane.normal);
     let height = normal.dot(point - plane.point);
-    let margin = 64.0 * roundoff * normal.abs().dot(point.abs() + plane.point.abs());
+    let margin = MARGIN * roundoff * normal.abs().dot(point.abs() + plane.point.abs());
     if height > margin {
         Side::Front
     } else if height < -margin {

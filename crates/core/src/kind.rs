@@ -1,6 +1,14 @@
-//! The shapes of one kind, and how their places and their numbers go together.
+//! The shapes of one kind: how their places and their numbers go together, and which are tried together.
 
 use std::ops::Range;
+
+/// A few primitives that are tried together: ranges of places.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Leaf {
+    pub(crate) spheres: Range<u32>,
+    pub(crate) triangles: Range<u32>,
+    pub(crate) cylinders: Range<u32>,
+}
 
 /// The primitives of one kind, in the order in which they are tried.
 #[derive(Debug)]

@@ -1,11 +1,11 @@
 //! Proof that there is room for packets: a lane of four numbers gives each the bits of one alone.
 
 use crate::camera::Camera;
+use crate::execution::Search;
 use crate::formulas::Robust;
 use crate::lane::{Lane, Mask};
 use crate::scene::{self, RenderSettings, Scene};
 use crate::trace::World;
-use crate::tracer::Search;
 use glam::DVec3;
 use std::array::from_fn;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};

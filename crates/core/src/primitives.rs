@@ -2,8 +2,9 @@
 //! anything in between.
 
 use crate::bundle::Bundle;
+use crate::execution::Search;
 use crate::formulas::{Aim, Family, LightPath};
-use crate::kind::Kind;
+use crate::kind::{Kind, Leaf};
 use crate::lane::{Lane, Mask, Scalar};
 use crate::material::Light;
 use crate::ray::{Heading, Ray, miss};
@@ -13,10 +14,8 @@ use crate::shapes::cylinder::{self, Cylinder};
 use crate::shapes::plane::Plane;
 use crate::shapes::sphere::{self, Sphere};
 use crate::shapes::triangle::{self, Triangle};
-use crate::tracer::Search;
 use crate::tree::{Bounds, Tree};
 use crate::vector::Vector;
-use std::ops::Range;
 
 /// From so many bounded primitives on there is a tree: of 63 spheres that mirror each other each is tried in less time
 /// (METHODOLOGY.md), of a thousand a tree is far ahead.
@@ -30,20 +29,12 @@ pub(crate) struct Primitives<S> {
     spheres: Kind<Sphere<S>>,
     triangles: Kind<Triangle<S>>,
     cylinders: Kind<Cylinder<S>>,
-    /// All that are not planes.
-    bounded: Leaf,
-    /// Over the bounded ones, where there are enough of them.
+    /// All triangles, and all others that are not planes.
+    triangles_and_others: [Leaf; 2],
+    /// Over these, where there are enough of them.
     tree: Option<Tree<S>>,
     /// The material of each primitive, by its number.
     materials: Vec<usize>,
-}
-
-/// A few primitives that are tried together: ranges of places.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Leaf {
-    spheres: Range<u32>,
-    triangles: Range<u32>,
-    cylinders: Range<u32>,
 }
 
 /// The nearest hit of a ray.
@@ -91,11 +82,14 @@ impl<S: Scalar> Primitives<S> {
             spheres: Kind::new(&scene.spheres, spheres_from, Sphere::new),
             triangles: Kind::new(&scene.triangles, triangles_from, Triangle::new),
             cylinders: Kind::new(&scene.cylinders, cylinders_from, Cylinder::new),
-            bounded: Leaf {
-                spheres: 0..scene.spheres.len() as u32,
-                triangles: 0..scene.triangles.len() as u32,
-                cylinders: 0..scene.cylinders.len() as u32,
-            },
+            triangles_and_others: [
+                Leaf { triangles: 0..scene.triangles.len() as u32, ..Leaf::default() },
+                Leaf {
+                    spheres: 0..scene.spheres.len() as u32,
+                    cylinders: 0..scene.cylinders.len() as u32,
+                    ..Leaf::default()
+                },
+            ],
             tree: None,
             materials,
         };
@@ -204,24 +198,20 @@ impl<S: Scalar> Primitives<S> {
         wanted: L::Mask,
         mut leaf: impl FnMut(&Leaf, &Aim<L>, L::Mask),
     ) {
-        let all = &self.bounded;
-        if !F::FAITHFUL || self.triangles.shapes.is_empty() {
-            return leaf(all, &self.aim(ray, Heading::default()), wanted);
+        let [triangles, others] = &self.triangles_and_others;
+        let empty = Leaf::default();
+        let any_heading = self.aim(ray, Heading::default());
+        if *others != empty {
+            leaf(others, &any_heading, wanted);
         }
-        let (others, triangles) = (
-            Leaf { triangles: 0..0, ..all.clone() },
-            Leaf { triangles: all.triangles.clone(), ..Leaf::default() },
-        );
-        if others != Leaf::default() {
-            leaf(&others, &self.aim(ray, Heading::default()), wanted);
+        if *triangles == empty {
+            return;
+        }
+        if !F::FAITHFUL {
+            return leaf(triangles, &any_heading, wanted);
         }
         ray.by_heading(wanted, |heading, wanted| {
-            let aim = Aim {
-                sphere: sphere::Aim::none(),
-                triangle: triangle::Aim::new(ray, heading),
-                cylinder: cylinder::Aim::none(),
-            };
-            leaf(&triangles, &aim, wanted);
+            leaf(triangles, &Aim { triangle: triangle::Aim::new(ray, heading), ..any_heading }, wanted);
         });
     }
 

@@ -24,6 +24,15 @@ pub(crate) fn miss<L: Lane>() -> L {
     L::literal(f64::INFINITY)
 }
 
+/// For x, y and z, the rays whose direction is longest along it; every ray belongs to exactly one.
+#[inline(always)]
+fn longest_axis<L: Lane>(direction: [L; 3]) -> [L::Mask; 3] {
+    let [x, y, z] = direction.map(L::abs);
+    let is_x = y.lt(x) & z.lt(x);
+    let is_y = !is_x & z.lt(y);
+    [is_x, is_y, !is_x & !is_y]
+}
+
 /// What similar rays have in common: along which axis they are longest, and which way they go.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Heading {
@@ -36,11 +45,10 @@ pub(crate) struct Heading {
 impl Heading {
     #[inline(always)]
     fn of<S: Scalar>(direction: [S; 3]) -> Self {
-        let [x, y, z] = direction.map(S::abs);
-        let order = match (y.lt(x) & z.lt(x), z.lt(y)) {
-            (true, _) => [1, 2, 0],
-            (false, true) => [2, 0, 1],
-            (false, false) => [0, 1, 2],
+        let order = match longest_axis(direction) {
+            [true, ..] => [1, 2, 0],
+            [_, true, _] => [2, 0, 1],
+            _ => [0, 1, 2],
         };
         Self { order, backward: direction.map(|d| d.lt(S::literal(0.0))) }
     }
@@ -52,10 +60,7 @@ impl<L: Lane> Ray<L> {
     pub(crate) fn by_heading(&self, wanted: L::Mask, mut group: impl FnMut(Heading, L::Mask)) {
         let direction = self.direction.to_array();
         let backward = direction.map(|d| d.lt(L::literal(0.0)));
-        let Vector { x, y, z } = self.direction.abs();
-        let along_x = y.lt(x) & z.lt(x);
-        let along_y = !along_x & z.lt(y);
-        let along = [along_x, along_y, !along_x & !along_y];
+        let along = longest_axis(direction);
         let mut todo = wanted;
         while let Some(first) = L::first(todo, direction) {
             let heading = Heading::of(first);

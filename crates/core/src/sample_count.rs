@@ -1,6 +1,6 @@
 //! How many samples a rectangle of pixels takes, counted without tracing any.
 
-use crate::scene::{RenderSettings, Sampling};
+use crate::scene::RenderSettings;
 
 /// The primary rays that the tracer follows for a tile of `width` x `height` pixels.
 ///
@@ -10,28 +10,30 @@ use crate::scene::{RenderSettings, Sampling};
 /// rays: the least is a single tile, the most a tile for each pixel, which is as if nothing were shared.
 ///
 /// Without sharing, and where no two pixels have a sample in common (one ray a pixel, or
-/// [by importance](Sampling::Importance)), it is [`RenderSettings::rays_per_pixel`] for each pixel.
+/// [by importance](crate::Sampling::Importance)), it is [`RenderSettings::rays_per_pixel`] for each pixel.
 ///
 /// `None` for an [adaptive](RenderSettings::adaptive) lattice: how many of its points are traced depends on what is
 /// seen. Reflected rays and those to the lights come on top; their number depends on that always.
 #[must_use]
 pub fn primary_rays(width: u32, height: u32, settings: &RenderSettings, share_samples: bool) -> Option<u64> {
-    let (width, height) = (u64::from(width), u64::from(height));
-    match (settings.antialiasing, settings.sampling) {
-        (1.., Sampling::Lattice) if settings.adaptive => None,
-        // Of no pixels there is nothing that reaches beyond them.
-        (density @ 1.., Sampling::Lattice) if share_samples && width > 0 && height > 0 => {
-            let points = |pixels: u64| u64::from(density) * (pixels + 1) + 1;
-            Some(points(width) * points(height))
-        }
-        _ => Some(width * height * u64::from(settings.rays_per_pixel())),
+    if !settings.has_lattice() || (!share_samples && !settings.adaptive) {
+        return Some(u64::from(width) * u64::from(height) * u64::from(settings.rays_per_pixel()));
     }
+    // Of no pixels there is nothing that reaches beyond them.
+    let points = |pixels| if pixels == 0 { 0 } else { lattice_points(pixels, settings.antialiasing) };
+    (!settings.adaptive).then(|| points(width) * points(height))
+}
+
+/// The lattice points along `pixels` pixels, 1 or more, with `density` steps each.
+pub(crate) fn lattice_points(pixels: u32, density: u32) -> u64 {
+    u64::from(density) * (u64::from(pixels) + 1) + 1
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::antialiasing::Filter;
+    use crate::scene::Sampling;
     use std::collections::BTreeSet;
 
     fn settings(antialiasing: u32, sampling: Sampling) -> RenderSettings {

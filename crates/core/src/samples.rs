@@ -37,6 +37,12 @@ impl<S: Scalar> Places<S> {
     }
 }
 
+/// So many steps of the lattice, as a distance between places: exactly.
+#[inline(always)]
+pub(crate) fn half_steps<S: Scalar>(steps: i64) -> S {
+    S::from_f64(2.0 * steps as f64)
+}
+
 /// The colours of samples: red, green and blue each in a list of its own.
 #[derive(Debug, Default)]
 pub(crate) struct Colors<S> {

@@ -247,6 +247,12 @@ impl Camera {
 }
 
 impl RenderSettings {
+    /// Whether samples lie on a lattice, whose points neighbouring pixels have in common.
+    #[must_use]
+    pub fn has_lattice(&self) -> bool {
+        self.antialiasing > 0 && self.sampling == Sampling::Lattice
+    }
+
     /// Primary rays a pixel, when each pixel traces its own.
     #[must_use]
     pub fn rays_per_pixel(&self) -> u32 {

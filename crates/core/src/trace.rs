@@ -3,6 +3,7 @@
 
 use crate::bundle::Bundle;
 use crate::confinement::hiding_planes;
+use crate::execution::Search;
 use crate::formulas::{Family, LightPath};
 use crate::lane::{Lane, Mask, Scalar};
 use crate::material::{Finish, Light, Material, power};
@@ -10,7 +11,6 @@ use crate::primitives::{Hit, Primitives};
 use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::shapes::SurfacePoint;
-use crate::tracer::Search;
 use crate::vector::Vector;
 use glam::DVec3;
 use std::marker::PhantomData;

@@ -3,88 +3,18 @@
 use crate::adaptive::Bands;
 use crate::antialiasing::Filter;
 use crate::camera::Camera;
-use crate::formulas::{Arithmetic, Compiled, Family};
-use crate::image::Tile;
+use crate::execution::{Execution, Lanes};
+use crate::formulas::{Compiled, Family};
+use crate::image::{Area, Tile};
 use crate::lane::{Lane, Scalar};
 use crate::lattice::LatticeSums;
-use crate::precision::Precision;
-use crate::samples::{Colors, Places};
+use crate::sample_count::lattice_points;
+use crate::samples::{Colors, Places, half_steps};
 use crate::scene::{Scene, SceneError};
 use crate::trace::World;
 use crate::work::Work;
 use std::fmt;
 use std::marker::PhantomData;
-
-/// How a picture is computed. Only the arithmetic changes its bits.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Execution {
-    /// Formulas and number type.
-    pub arithmetic: Arithmetic,
-    /// Rays side by side.
-    pub lanes: Lanes,
-    /// Whether a lattice point that several pixels of a tile need is traced once; of adaptive samples it always is.
-    pub share_samples: bool,
-    /// Whether a ray tries what it cannot meet.
-    pub search: Search,
-}
-
-/// Which primitives a ray tries. With the textbook's formulas it is always each of them: what they would find there
-/// depends on where they look.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Search {
-    /// What the scene's shape does not rule out: by cones of directions around the eye and the lights, or, among many
-    /// primitives, by a tree of boxes.
-    #[default]
-    Auto,
-    /// Each: the definition, to hold the other against.
-    Exhaustive,
-}
-
-/// How many rays are followed side by side, as a packet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Lanes {
-    /// One.
-    One,
-    /// As many as fill 256 bits: 8 in `f32`, 4 in `f64`.
-    Wide256,
-    /// As many as fill 512 bits: 16 in `f32`, 8 in `f64`.
-    Wide512,
-}
-
-/// As many as fill a register of the machine that the program is built for; 256 bits if it is smaller.
-impl Default for Lanes {
-    fn default() -> Self {
-        if cfg!(target_feature = "avx512f") { Self::Wide512 } else { Self::Wide256 }
-    }
-}
-
-impl Lanes {
-    /// Each width there is.
-    pub const ALL: [Self; 3] = [Self::One, Self::Wide256, Self::Wide512];
-
-    /// The number of rays in this precision.
-    #[must_use]
-    pub fn count(self, precision: Precision) -> usize {
-        match (self, precision) {
-            (Self::One, _) => 1,
-            (Self::Wide256, Precision::F32) | (Self::Wide512, Precision::F64) => 8,
-            (Self::Wide256, Precision::F64) => 4,
-            (Self::Wide512, Precision::F32) => 16,
-        }
-    }
-}
-
-/// The fastest execution in this arithmetic: packets, and samples shared.
-impl<A: Into<Arithmetic>> From<A> for Execution {
-    fn from(arithmetic: A) -> Self {
-        Self {
-            arithmetic: arithmetic.into(),
-            lanes: Lanes::default(),
-            share_samples: true,
-            search: Search::default(),
-        }
-    }
-}
 
 /// The work of rendering `scene` into a picture of `width` x `height` pixels, up to the 65,535 of a scene file each: places in
 /// larger ones are not exact.
@@ -174,6 +104,12 @@ impl<L: Lane, F: Family> Tracer<L, F> {
         Scalar::from_f64((i64::from(self.filter.density()) * half_pixels) as f64)
     }
 
+    /// The place of the first lattice point of a tile, a pixel before the centre of its first one.
+    fn corner(&self, area: Area) -> (L::Scalar, L::Scalar) {
+        let back = half_steps(-i64::from(self.filter.density()));
+        (self.centre(area.x, self.width) + back, self.centre(area.y, self.height) + back)
+    }
+
     /// Every pixel with samples of its own.
     fn render_alone(&self, tile: &mut Tile<'_>) {
         let area = tile.area();
@@ -201,9 +137,8 @@ impl<L: Lane, F: Family> Tracer<L, F> {
     /// The lattice over the tile and around it, each point traced once.
     fn render_shared(&self, tile: &mut Tile<'_>, weights: &[L::Scalar]) {
         let (area, density) = (tile.area(), self.filter.density());
-        let (columns, rows) = (density * (area.width + 1) + 1, density * (area.height + 1) + 1);
-        let half_steps = |i: u32| L::Scalar::from_f64(2.0 * (f64::from(i) - f64::from(density)));
-        let (left, top) = (self.centre(area.x, self.width), self.centre(area.y, self.height));
+        let [columns, rows] = [area.width, area.height].map(|pixels| lattice_points(pixels, density) as u32);
+        let (left, top) = self.corner(area);
         let (mut places, mut colors) = (Places::default(), Colors::default());
         let mut sums = LatticeSums::new(weights, density as usize, area.width as usize);
         let mut height = 0;
@@ -215,12 +150,11 @@ impl<L: Lane, F: Family> Tracer<L, F> {
                 places.clear();
                 sums.start_strip(strip as usize);
                 for_each_in_blocks(columns, strip, |column, row| {
-                    places.push(half_steps(column), half_steps(row));
+                    places.push(half_steps(column.into()), half_steps(row.into()));
                     sums.expect(column as usize, row as usize);
                 });
             }
-            let down = L::Scalar::from_f64(2.0 * f64::from(first_row));
-            self.trace(&places, (left, top + down), &mut colors);
+            self.trace(&places, (left, top + half_steps(first_row.into())), &mut colors);
             sums.fill(&colors);
             for row in first_row..first_row + strip {
                 sums.add_row((row - first_row) as usize, row as usize, tile);
@@ -231,9 +165,7 @@ impl<L: Lane, F: Family> Tracer<L, F> {
     /// The lattice over the tile and around it; points that need no ray are interpolated.
     fn render_adaptive(&self, tile: &mut Tile<'_>, weights: &[L::Scalar]) {
         let (area, density) = (tile.area(), self.filter.density());
-        let half_steps = |i: i64| L::Scalar::from_f64(2.0 * i as f64);
-        let left = self.centre(area.x, self.width) + half_steps(-i64::from(density));
-        let top = self.centre(area.y, self.height) + half_steps(-i64::from(density));
+        let (left, top) = self.corner(area);
         let (mut places, mut colors) = (Places::default(), Colors::default());
         let mut sums = LatticeSums::new(weights, density as usize, area.width as usize);
         sums.start_strip(density as usize);

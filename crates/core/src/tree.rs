@@ -6,9 +6,10 @@
 //! those roundings, or, along the axis in which the ray is longest, the box lies behind the ray or beyond what was
 //! found before; in this axis the `t` of every primitive is within its box.
 
+use crate::kind::Leaf;
 use crate::lane::{Lane, Mask, Scalar};
-use crate::primitives::Leaf;
 use crate::ray::{Heading, Ray};
+use crate::shapes::MARGIN;
 use crate::vector::Vector;
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
@@ -53,10 +54,6 @@ const LARGEST: f64 = 1e12;
 /// How the tree is built. A packet tries a primitive in about the time of two boxes, so leaves are small.
 const BUILD: BvhBuildParams =
     BvhBuildParams { max_prims_per_leaf: 4, collapse_traversal_cost: 2.0, ..BvhBuildParams::medium_build() };
-
-/// Roundings of the largest coordinates by which boxes are made larger. The shapes need 31 at the most: of a sphere,
-/// 12 in each of the coordinates and the radius, over three axes.
-const MARGIN: f64 = 64.0;
 
 impl<S: Scalar> Bounds<S> {
     pub(crate) fn new(low: Vector<S>, high: Vector<S>) -> Self {

@@ -7,8 +7,7 @@ use crate::options::{
 use crate::output::{PendingFile, distinct_files};
 use crate::{Outcome, print, progress};
 use clap::Args;
-use rayweave_core::scene::RenderSettings;
-use rayweave_core::{Area, Arithmetic, Execution, Sampling, Strategy, Work, primary_rays};
+use rayweave_core::{Area, Arithmetic, Execution, Strategy, Work, primary_rays};
 use rayweave_measure::Protocol;
 use rayweave_measure::compare::{Comparison, Entry, Executor};
 use rayweave_measure::machine::Machine;
@@ -57,8 +56,8 @@ pub fn run(scene: Option<&Path>, options: &Options) -> Result<Outcome, String> {
         SharingOption::Both => &[true, false],
     };
     let input = Input::load_sharing(scene, &options.scene_options, ways[0])?;
-    let RenderSettings { antialiasing, sampling, adaptive, .. } = input.scene.render;
-    if ways.len() > 1 && (antialiasing == 0 || sampling == Sampling::Importance || adaptive) {
+    let settings = &input.scene.render;
+    if ways.len() > 1 && (!settings.has_lattice() || settings.adaptive) {
         return Err(
             "--share-samples both: without a lattice, or with an adaptive one, there is no choice".to_owned()
         );

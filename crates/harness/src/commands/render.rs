@@ -7,8 +7,7 @@ use crate::picture::Format;
 use crate::progress::Watched;
 use crate::{Outcome, print};
 use clap::Args;
-use rayweave_core::scene::RenderSettings;
-use rayweave_core::{Analysis, Execution, Plan, Sampling, Strategy, ThreadsStart, Work};
+use rayweave_core::{Analysis, Execution, Plan, Strategy, ThreadsStart, Work};
 use rayweave_measure::machine::Machine;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -80,8 +79,8 @@ fn explain(input: &Input, preparing: f64) -> Result<String, String> {
     let analysis =
         Analysis::of(&input.scene, &input.execution).map_err(|e| format!("{}: {e}", input.name))?;
     let Execution { arithmetic, lanes, share_samples, .. } = input.execution;
-    let RenderSettings { antialiasing, sampling, adaptive, .. } = input.scene.render;
-    let shared = antialiasing > 0 && sampling == Sampling::Lattice && (share_samples || adaptive);
+    let settings = &input.scene.render;
+    let shared = settings.has_lattice() && (share_samples || settings.adaptive);
     let lanes = lanes.count(arithmetic.precision);
     let samples = if shared { "shared by the pixels of a tile" } else { "each pixel's own" };
     Ok(format!(
