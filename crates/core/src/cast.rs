@@ -33,7 +33,12 @@ impl Caster {
     /// A scene that [`Scene::check`] rejects.
     pub fn new(scene: &Scene, arithmetic: impl Into<Arithmetic>) -> Result<Self, SceneError> {
         scene.check()?;
-        Ok(Self(arithmetic.into().select(scene)))
+        Ok(Self::of(scene, arithmetic.into()))
+    }
+
+    /// Not generic, so that all that is compiled for it is compiled in this crate, and in none that uses it.
+    fn of(scene: &Scene, arithmetic: Arithmetic) -> Self {
+        Self(arithmetic.select(scene))
     }
 
     /// The nearest hit of the ray from `origin` in `direction`, which may have any length but 0. Both

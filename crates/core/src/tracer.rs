@@ -29,8 +29,7 @@ pub fn tracer(
     execution: impl Into<Execution>,
 ) -> Result<Box<dyn Work + Send>, SceneError> {
     scene.check()?;
-    let execution = execution.into();
-    Ok(execution.arithmetic.select(Picture { scene, width, height, execution }))
+    Ok(Picture { scene, width, height, execution: execution.into() }.tracer())
 }
 
 /// What a tracer is compiled for.
@@ -39,6 +38,13 @@ struct Picture<'a> {
     width: u32,
     height: u32,
     execution: Execution,
+}
+
+impl Picture<'_> {
+    /// Not generic, so that all that is compiled for it is compiled in this crate, and in none that uses it.
+    fn tracer(self) -> Box<dyn Work + Send> {
+        self.execution.arithmetic.select(self)
+    }
 }
 
 impl Compiled for Picture<'_> {
