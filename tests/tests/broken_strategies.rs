@@ -1,7 +1,7 @@
 //! Deliberately broken strategies, each of which `check` has to catch with the right pixel named;
 //! and the real ones, which have to pass it, and to survive work that panics.
 
-use rayweave_core::strategy::render_tile;
+use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule, render_tile};
 use rayweave_core::{Area, Image, Plan, Renderer, Rgb, Strategy, StrategyError, ThreadsStart, Tile, Work};
 use rayweave_measure::{Case, Check, Fault, Finding};
 use rayweave_registry::{STRATEGIES, reference};
@@ -45,6 +45,10 @@ impl Strategy for Broken {
 
     fn threads_start(&self) -> ThreadsStart {
         ThreadsStart::Render
+    }
+
+    fn rule(&self) -> Rule {
+        Rule { piece: Piece::Tile, dealing: Dealing::Shared { chunk: 1 }, delivery: Delivery::InPlace }
     }
 
     fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
@@ -401,6 +405,10 @@ impl Strategy for Remembers {
 
     fn threads_start(&self) -> ThreadsStart {
         ThreadsStart::Render
+    }
+
+    fn rule(&self) -> Rule {
+        Rule { piece: Piece::Tile, dealing: Dealing::Shared { chunk: 1 }, delivery: Delivery::InPlace }
     }
 
     fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {

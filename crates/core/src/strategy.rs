@@ -19,6 +19,9 @@ pub trait Strategy: Sync {
     /// Where its threads are started, and so which figure contains that cost.
     fn threads_start(&self) -> ThreadsStart;
 
+    /// How it deals out the work: what a simulation of it goes by.
+    fn rule(&self) -> Rule;
+
     /// Makes ready to render with exactly `plan.threads` computing threads; a thread pool is built here.
     ///
     /// # Errors
@@ -60,6 +63,57 @@ pub enum ThreadsStart {
     Render,
 }
 
+/// How a strategy deals out the work.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rule {
+    /// What is computed at once, and so may share samples.
+    pub piece: Piece,
+    /// Who gets which pieces.
+    pub dealing: Dealing,
+    /// How a finished piece comes into the picture.
+    pub delivery: Delivery,
+}
+
+/// What a thread computes at once.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Piece {
+    /// One pixel.
+    Pixel,
+    /// One row of the picture.
+    Row,
+    /// A tile of [`Plan::tile`].
+    Tile,
+    /// All rows that a thread gets.
+    Band,
+}
+
+/// Who gets which pieces; these are numbered from the top left, row by row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dealing {
+    /// Beforehand: each thread one of as many equal ranges of them.
+    Equal,
+    /// Whoever is free takes the next `chunk` of them, in order.
+    Shared {
+        /// Pieces taken at a time, 1 or more.
+        chunk: usize,
+    },
+    /// Whoever is free takes, in order, those that are left over the number of threads: ever fewer.
+    Guided,
+    /// Each thread has a range of its own; whoever is idle takes half of another's.
+    Stealing,
+}
+
+/// How a finished piece comes into the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Delivery {
+    /// It was written there.
+    InPlace,
+    /// It is copied under a lock that all threads share.
+    Locked,
+    /// It is sent to the thread that owns the picture, which copies it.
+    Sent,
+}
+
 /// Why a strategy gave no picture.
 #[derive(Debug, Error)]
 pub enum StrategyError {
@@ -72,6 +126,14 @@ pub enum StrategyError {
         tile: Area,
         /// What the panic said.
         message: String,
+    },
+    /// What it is made of is not there.
+    #[error("{strategy}: unavailable here: {reason}")]
+    Unavailable {
+        /// The strategy's name.
+        strategy: &'static str,
+        /// What is missing, and how to get it.
+        reason: &'static str,
     },
     /// A thread could not be started; those that could have ended.
     #[error("{strategy}: cannot start {threads} threads: {source}; use fewer (--threads)")]

@@ -90,6 +90,7 @@ fn nanoseconds(duration: Duration) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule};
     use rayweave_core::{Renderer, Rgb, Strategy, StrategyError, ThreadsStart, Tile};
     use std::num::NonZeroUsize;
     use std::sync::atomic::{AtomicUsize, Ordering};
@@ -125,6 +126,10 @@ mod tests {
             ThreadsStart::Never
         }
 
+        fn rule(&self) -> Rule {
+            Rule { piece: Piece::Tile, dealing: Dealing::Shared { chunk: 1 }, delivery: Delivery::InPlace }
+        }
+
         fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
             let source = std::io::Error::other("tired");
             match self.prepared.fetch_add(1, Ordering::Relaxed) {
@@ -155,6 +160,10 @@ mod tests {
 
         fn threads_start(&self) -> ThreadsStart {
             ThreadsStart::Never
+        }
+
+        fn rule(&self) -> Rule {
+            Rule { piece: Piece::Tile, dealing: Dealing::Shared { chunk: 1 }, delivery: Delivery::InPlace }
         }
 
         fn prepare(&self, _: Plan) -> Result<Box<dyn Renderer>, StrategyError> {

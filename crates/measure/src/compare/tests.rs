@@ -1,6 +1,7 @@
 //! The protocol's logic, with a clock and renderings that are made up.
 
 use super::*;
+use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule};
 use rayweave_core::{Image, Plan, Renderer, StrategyError};
 use std::cell::RefCell;
 
@@ -18,6 +19,10 @@ impl Strategy for Named {
 
     fn threads_start(&self) -> ThreadsStart {
         self.1
+    }
+
+    fn rule(&self) -> Rule {
+        Rule { piece: Piece::Tile, dealing: Dealing::Shared { chunk: 1 }, delivery: Delivery::InPlace }
     }
 
     fn prepare(&self, _: Plan) -> Result<Box<dyn Renderer>, StrategyError> {

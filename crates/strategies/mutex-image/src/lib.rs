@@ -10,6 +10,7 @@
 //!   shows which of its two mistakes costs more.
 
 use parking_lot::Mutex;
+use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule};
 use rayweave_core::{Image, Plan, Renderer, Strategy, StrategyError, ThreadsStart, Tile, Work};
 use rayweave_thread_team as thread_team;
 use std::num::NonZeroUsize;
@@ -31,6 +32,10 @@ impl Strategy for MutexImage {
 
     fn threads_start(&self) -> ThreadsStart {
         ThreadsStart::Render
+    }
+
+    fn rule(&self) -> Rule {
+        Rule { piece: Piece::Pixel, dealing: Dealing::Equal, delivery: Delivery::Locked }
     }
 
     fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {

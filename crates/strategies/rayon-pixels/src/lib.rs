@@ -13,7 +13,7 @@
 
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use rayweave_core::strategy::render_tile;
+use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule, render_tile};
 use rayweave_core::{Image, Plan, Renderer, Strategy, StrategyError, ThreadsStart, Tile, Work};
 use std::io;
 
@@ -34,6 +34,10 @@ impl Strategy for RayonPixels {
 
     fn threads_start(&self) -> ThreadsStart {
         ThreadsStart::Prepare
+    }
+
+    fn rule(&self) -> Rule {
+        Rule { piece: Piece::Pixel, dealing: Dealing::Stealing, delivery: Delivery::InPlace }
     }
 
     fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {

@@ -6,7 +6,7 @@
 //! * **When it is right**: for a picture that is done sooner than a thread is started (tens of
 //!   microseconds), or when the cores are busy with other pictures already.
 
-use rayweave_core::strategy::render_tile;
+use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule, render_tile};
 use rayweave_core::{Image, Plan, Renderer, Strategy, StrategyError, ThreadsStart, Work};
 use std::num::NonZeroU32;
 
@@ -27,6 +27,10 @@ impl Strategy for Sequential {
 
     fn threads_start(&self) -> ThreadsStart {
         ThreadsStart::Never
+    }
+
+    fn rule(&self) -> Rule {
+        Rule { piece: Piece::Tile, dealing: Dealing::Equal, delivery: Delivery::InPlace }
     }
 
     fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {

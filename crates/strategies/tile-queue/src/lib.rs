@@ -12,6 +12,7 @@
 //! are written without a lock, and the compiler has proved that they may be.
 
 use crossbeam::queue::ArrayQueue;
+use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule};
 use rayweave_core::{Image, Plan, Renderer, Strategy, StrategyError, ThreadsStart, Work};
 use rayweave_thread_team as thread_team;
 use std::iter;
@@ -33,6 +34,10 @@ impl Strategy for TileQueue {
 
     fn threads_start(&self) -> ThreadsStart {
         ThreadsStart::Render
+    }
+
+    fn rule(&self) -> Rule {
+        Rule { piece: Piece::Tile, dealing: Dealing::Shared { chunk: 1 }, delivery: Delivery::InPlace }
     }
 
     fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
