@@ -12,6 +12,8 @@ use std::fmt;
 pub struct Analysis {
     /// Planes, spheres, triangles and cylinders. Rays do not look for a kind that is not there.
     pub primitives: [usize; 4],
+    /// How many of them no ray reaches: left out.
+    pub behind: usize,
     /// The most bounces of a ray: 0 if nothing mirrors.
     pub bounces: u32,
     /// Lights, and how many of them can light anything that is seen: not those without power, nor those behind a
@@ -62,13 +64,11 @@ impl Compiled for Looked<'_> {
         let scene = self.scene;
         let world = World::<S, F>::new(scene, Some(scene.camera.position), self.search);
         let hiding_planes: Vec<usize> = world.lights.iter().map(|light| light.planes.len()).collect();
+        let primitives =
+            [scene.planes.len(), scene.spheres.len(), scene.triangles.len(), scene.cylinders.len()];
         Analysis {
-            primitives: [
-                scene.planes.len(),
-                scene.spheres.len(),
-                scene.triangles.len(),
-                scene.cylinders.len(),
-            ],
+            primitives,
+            behind: primitives.iter().sum::<usize>() - world.primitives.count(),
             bounces: world.max_reflections,
             lights: (scene.lights.len(), hiding_planes.len()),
             hiding_planes,
@@ -88,6 +88,9 @@ impl fmt::Display for Analysis {
             f,
             "primitives: {planes} planes, {spheres} spheres, {triangles} triangles, {cylinders} cylinders"
         )?;
+        if self.behind > 0 {
+            writeln!(f, "left out: {} of them, behind all that rays reach", self.behind)?;
+        }
         match self.search {
             Found::Each => writeln!(f, "search: every ray tries every primitive")?,
             Found::Cones => writeln!(
@@ -153,5 +156,23 @@ mod tests {
         assert_eq!(analysis(3, 0.5, Search::Auto).bounces, 4);
         assert!(matches!(analysis(100, 0.0, Search::Auto).search, Found::Tree { leaves } if leaves > 10));
         assert_eq!(analysis(100, 0.0, Search::Exhaustive).search, Found::Each);
+    }
+
+    /// Catches what is left out though a mirror, or the way to a light behind the eye, shows it; and what is not.
+    #[test]
+    fn what_is_behind_is_left_out() {
+        let behind = |reflection, light_z, search| {
+            let mut scene = scene(3, reflection);
+            scene.lights[0].position.z = light_z;
+            scene.spheres[1].center.z = 10.0;
+            let execution = Execution { search, ..Execution::from(Precision::F32) };
+            Analysis::of(&scene, &execution).expect("a sound scene").behind
+        };
+        assert_eq!(behind(0.0, 9.0, Search::Auto), 1);
+        // The sphere reaches from 9.6 to 10.4.
+        assert_eq!(behind(0.0, 9.59, Search::Auto), 1);
+        assert_eq!(behind(0.0, 9.61, Search::Auto), 0);
+        assert_eq!(behind(0.1, 9.0, Search::Auto), 0);
+        assert_eq!(behind(0.0, 9.0, Search::Exhaustive), 0);
     }
 }

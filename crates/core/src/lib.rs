@@ -18,6 +18,7 @@ mod confinement;
 pub mod execution;
 pub mod formulas;
 pub mod image;
+mod in_front;
 mod kind;
 mod lane;
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! How many digits a scene needs.
 
+use crate::execution::Lanes;
 use crate::scene::{Cylinder, Plane, Scene, Sphere, Triangle, near_one, unit};
 use glam::DVec3;
 use std::fmt;
@@ -101,6 +102,13 @@ impl Demand {
 
     fn in_range(&self) -> bool {
         self.extreme <= F32_RANGE.end && self.least >= F32_RANGE.start
+    }
+
+    /// How many rays to follow side by side: rays of neighbours part as errors grow, and where they part too far
+    /// between curved mirrors for `f32`, a packet soon holds rays that have nothing in common.
+    #[must_use]
+    pub fn lanes(&self) -> Lanes {
+        if self.mirrors <= F32_MIRRORS { Lanes::default() } else { Lanes::One }
     }
 
     /// The cheapest number type whose error a picture in 8 bits does not show.

@@ -99,6 +99,10 @@ impl<S: Scalar> Primitives<S> {
         primitives
     }
 
+    pub(crate) fn count(&self) -> usize {
+        self.materials.len()
+    }
+
     /// Of the tree, if there is one.
     pub(crate) fn leaves(&self) -> Option<usize> {
         self.tree.as_ref().map(Tree::leaves)

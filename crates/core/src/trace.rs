@@ -5,6 +5,7 @@ use crate::bundle::Bundle;
 use crate::confinement::hiding_planes;
 use crate::execution::Search;
 use crate::formulas::{Family, LightPath};
+use crate::in_front::in_front;
 use crate::lane::{Lane, Mask, Scalar};
 use crate::material::{Finish, Light, Material, power};
 use crate::primitives::{Hit, Primitives};
@@ -46,10 +47,14 @@ struct Surface<L: Lane> {
 }
 
 impl<S: Scalar, F: Family> World<S, F> {
-    /// For rays that all start at `eye`, or else anywhere.
+    /// For rays that all start at `eye`, the camera's, and go forward; or else for any.
     pub(crate) fn new(scene: &Scene, eye: Option<DVec3>, search: Search) -> Self {
         // What is left out rests on the formulas' error bounds.
         let search = if F::FAITHFUL { search } else { Search::Exhaustive };
+        let scene = match (eye, search) {
+            (Some(_), Search::Auto) => &in_front(scene, S::ROUNDOFF),
+            _ => scene,
+        };
         let primitives = Primitives::new(scene, search);
         let cones = search == Search::Auto && primitives.leaves().is_none();
         let bundle = |point: DVec3| cones.then(|| Bundle::new(scene, point));

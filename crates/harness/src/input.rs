@@ -58,7 +58,7 @@ impl Input {
             PrecisionOption::F64 => (Precision::F64, "as asked for".to_owned()),
         };
         let arithmetic = Arithmetic { formulas: options.formulas.into(), precision };
-        let (lanes, search) = (options.lanes.into(), options.search.into());
+        let (lanes, search) = (options.lanes.or(demand.lanes()), options.search.into());
         let execution = Execution { arithmetic, lanes, share_samples, search };
         let skipped_triangles = file.skipped_triangles;
         Ok(Self { name, scene, width, height, execution, reason, skipped_triangles })

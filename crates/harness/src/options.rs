@@ -81,7 +81,7 @@ pub enum FormulasOption {
 /// How many rays are followed side by side.
 #[derive(Clone, Copy, Default, ValueEnum)]
 pub enum LanesOption {
-    /// The fastest here
+    /// As many as fill a register here; one by one where mirrors scatter neighbouring rays
     #[default]
     Auto,
     /// One by one
@@ -144,13 +144,14 @@ impl From<FormulasOption> for Formulas {
     }
 }
 
-impl From<LanesOption> for Lanes {
-    fn from(option: LanesOption) -> Self {
-        match option {
-            LanesOption::Auto => Self::default(),
-            LanesOption::One => Self::One,
-            LanesOption::Wide256 => Self::Wide256,
-            LanesOption::Wide512 => Self::Wide512,
+impl LanesOption {
+    /// What is asked for, or else `auto`.
+    pub fn or(self, auto: Lanes) -> Lanes {
+        match self {
+            Self::Auto => auto,
+            Self::One => Lanes::One,
+            Self::Wide256 => Lanes::Wide256,
+            Self::Wide512 => Lanes::Wide512,
         }
     }
 }

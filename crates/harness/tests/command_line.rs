@@ -207,6 +207,10 @@ fn compare_says_how_the_picture_is_computed() {
         run("--antialiasing 1 --lanes 8 --precision f64 --share-samples off --search exhaustive");
     assert_eq!(line, "computed: 4 rays side by side, samples not shared, search exhaustive");
     assert_eq!(keys, [Value::from(4), Value::from(false), Value::from("exhaustive")]);
+    // Its mirrors scatter neighbours.
+    let imbalance = repository().join("scenes/imbalance.toml");
+    let (line, _) = run(&format!("{} --antialiasing 1", imbalance.display()));
+    assert_eq!(line, "computed: rays one by one, samples shared, search auto");
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use rayweave_core::precision::{Demand, F32_DISPLACEMENT, F32_MIRRORS};
 use rayweave_core::scene::{Cylinder, Material, Plane, Sphere, Triangle};
-use rayweave_core::{Precision, Scene};
+use rayweave_core::{Lanes, Precision, Scene};
 use rayweave_tests::transform::{enlarged, moved};
 use rayweave_tests::{metrics, model, picture, scenes};
 
@@ -129,6 +129,9 @@ fn the_displacement_and_the_mirrors_decide() {
     assert_eq!(demand(F32_DISPLACEMENT, F32_MIRRORS).precision(), Precision::F32);
     assert_eq!(demand(F32_DISPLACEMENT * more, 0.0).precision(), Precision::F64);
     assert_eq!(demand(0.0, F32_MIRRORS * more).precision(), Precision::F64);
+    // Packets, whatever else asks for `f64`; not between mirrors that scatter.
+    assert_eq!(demand(F32_DISPLACEMENT * more, F32_MIRRORS).lanes(), Lanes::default());
+    assert_eq!(demand(0.0, F32_MIRRORS * more).lanes(), Lanes::One);
     // Planes without anything beside them have no outline: no coordinate is too large for them.
     let floor = Plane { point: -1e8 * DVec3::Y, normal: DVec3::Y, material: 0 };
     assert_eq!(chosen(&Scene { planes: vec![floor], ..empty() }), Precision::F32);

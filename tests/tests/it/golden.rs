@@ -2,7 +2,7 @@
 //!
 //! They may change only when a picture's meaning changes: the model, a formula, an order of
 //! operations. A faster way to the same picture, another strategy, compiler or machine is no such
-//! change. To print new ones, run `cargo test -p rayweave-tests --test golden`: the failure shows
+//! change. To print new ones, run `cargo test -p rayweave-tests golden`: the failure shows
 //! the whole table as it has to stand here.
 
 use rayweave_core::{Arithmetic, Formulas, Precision, Sampling, Scene, tracer};

@@ -5,7 +5,7 @@ use rayweave_core::{Arithmetic, Formulas, Precision};
 
 /// How many families miss their goals.
 fn misses(formulas: Formulas, precision: Precision, tier: Tier) -> Vec<String> {
-    let corpus = include_str!("../corpus/hard-cases.jsonl");
+    let corpus = include_str!("../../corpus/hard-cases.jsonl");
     let cases = cases::read(corpus.as_bytes()).expect("the corpus");
     let arithmetic = Arithmetic { formulas, precision };
     let outcomes: Vec<_> = cases.iter().map(|case| kernel::outcome(case, arithmetic)).collect();

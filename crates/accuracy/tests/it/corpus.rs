@@ -3,7 +3,7 @@
 use rayweave_accuracy::{FAMILIES, Primitive, answer, cases, generate};
 
 /// `cargo run -p rayweave-accuracy --example hard-cases -- --seed 1977 --count 20 > corpus/hard-cases.jsonl`
-const CORPUS: &str = include_str!("../corpus/hard-cases.jsonl");
+const CORPUS: &str = include_str!("../../corpus/hard-cases.jsonl");
 const SEED: u64 = 1977;
 const COUNT: usize = 20;
 

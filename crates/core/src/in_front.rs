@@ -1,0 +1,47 @@
+//! What no ray reaches, since nothing sends one back: without mirrors, rays from the eye go forward, and from what they
+//! hit to the lights. All of that lies in front of the eye, or of the light that is farthest behind it; and since a half
+//! space is convex, so does everything in between.
+
+use crate::scene::{Cylinder, Scene, Sphere, Triangle, unit};
+use crate::shapes::MARGIN;
+use glam::DVec3;
+use std::borrow::Cow;
+
+/// The scene without the spheres, triangles and cylinders that are behind all that its camera's rays reach. Those that
+/// remain keep their order, which decides between equal distances.
+pub(crate) fn in_front(scene: &Scene, roundoff: f64) -> Cow<'_, Scene> {
+    if scene.materials.iter().any(|material| material.reflection > 0.0) {
+        return Cow::Borrowed(scene);
+    }
+    let eye = scene.camera.position;
+    let forward = unit(scene.camera.look_at - eye);
+    let height = |point: DVec3| forward.dot(point - eye);
+    let lowest = scene.lights.iter().map(|light| height(light.position)).fold(0.0, f64::min);
+    // From `center` it extends `radius` in any direction.
+    let reached = |center: DVec3, radius: f64| {
+        let reach = forward.abs().dot(center.abs() + eye.abs()) + radius;
+        // NaN, of numbers too large for a sum, is reached.
+        !(height(center) + radius < lowest - MARGIN * roundoff * reach)
+    };
+    let spheres = |sphere: &Sphere| reached(sphere.center, sphere.radius);
+    let triangles = |triangle: &Triangle| triangle.vertices.iter().any(|&v| reached(v, 0.0));
+    let cylinders = |cylinder: &Cylinder| {
+        [cylinder.bottom, cylinder.top].iter().any(|&end| reached(end, cylinder.radius))
+    };
+    if scene.spheres.iter().all(spheres)
+        && scene.triangles.iter().all(triangles)
+        && scene.cylinders.iter().all(cylinders)
+    {
+        return Cow::Borrowed(scene);
+    }
+    Cow::Owned(Scene {
+        camera: scene.camera,
+        render: scene.render,
+        lights: scene.lights.clone(),
+        materials: scene.materials.clone(),
+        planes: scene.planes.clone(),
+        spheres: scene.spheres.iter().copied().filter(spheres).collect(),
+        triangles: scene.triangles.iter().copied().filter(triangles).collect(),
+        cylinders: scene.cylinders.iter().copied().filter(cylinders).collect(),
+    })
+}

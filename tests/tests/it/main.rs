@@ -1,0 +1,22 @@
+//! One program of all tests here: each more would be linked anew.
+
+mod acne;
+mod agreement;
+mod boundaries;
+mod broken_strategies;
+mod contributing;
+mod errata;
+mod executions;
+mod geometry;
+mod golden;
+mod hard_scenes;
+mod identity;
+mod invariance;
+mod model;
+mod precision;
+mod shortcuts;
+mod textbook;
+mod tidy;
+mod tradeoff;
+mod tree;
+mod watertight;
