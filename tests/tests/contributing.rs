@@ -47,14 +47,14 @@ fn blocks(text: &str, language: &str) -> Vec<String> {
 
 /// Puts `line` after the one line that is `after`.
 fn insert(file: &Path, after: &str, line: &str) {
+    replace(file, after, &format!("{after}\n{line}"));
+}
+
+/// Puts `new` in place of the one line that is `old`.
+fn replace(file: &Path, old: &str, new: &str) {
     let text = fs::read_to_string(file).expect("the file");
-    assert_eq!(
-        text.lines().filter(|found| found.trim() == after).count(),
-        1,
-        "{after} in {}",
-        file.display()
-    );
-    fs::write(file, text.replacen(after, &format!("{after}\n{line}"), 1)).expect("written");
+    assert_eq!(text.lines().filter(|found| found.trim() == old).count(), 1, "{old} in {}", file.display());
+    fs::write(file, text.replacen(old, new, 1)).expect("written");
 }
 
 fn cargo(workspace: &Path, arguments: &[&str]) -> Output {
@@ -100,8 +100,8 @@ fn the_steps_add_a_strategy() {
     fs::write(strategy.join("src/lib.rs"), source).expect("written");
     insert(&workspace.join("Cargo.toml"), "# One line a strategy.", dependency.trim());
     insert(&workspace.join("crates/registry/Cargo.toml"), "[dependencies]", member_dependency.trim());
-    // At the end of the slice: after the last strategy that is there.
-    insert(&workspace.join("crates/registry/src/lib.rs"), "&rayweave_tile_queue::TileQueue,", registry_line);
+    // At the end of the slice.
+    replace(&workspace.join("crates/registry/src/lib.rs"), "];", &format!("{registry_line}];"));
 
     let run = |arguments: &[&str]| {
         let output =
