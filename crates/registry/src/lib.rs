@@ -5,6 +5,7 @@ use rayweave_core::Strategy;
 /// Every strategy, in the order of every list: the reference first, then from the simplest on.
 pub static STRATEGIES: &[&dyn Strategy] = &[
     &rayweave_sequential::Sequential,
+    &rayweave_scoped_bands::ScopedBands,
     &rayweave_rayon_pixels::RayonPixels,
     &rayweave_mutex_image::MutexImage,
     &rayweave_tile_queue::TileQueue,
