@@ -6,6 +6,7 @@ use rayweave_core::Strategy;
 pub static STRATEGIES: &[&dyn Strategy] = &[
     &rayweave_sequential::Sequential,
     &rayweave_scoped_bands::ScopedBands,
+    &rayweave_row_counter::RowCounter,
     &rayweave_rayon_pixels::RayonPixels,
     &rayweave_mutex_image::MutexImage,
     &rayweave_tile_queue::TileQueue,
