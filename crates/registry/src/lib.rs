@@ -8,6 +8,7 @@ pub static STRATEGIES: &[&dyn Strategy] = &[
     &rayweave_scoped_bands::ScopedBands,
     &rayweave_row_counter::RowCounter,
     &rayweave_rayon_pixels::RayonPixels,
+    &rayweave_rayon_rows::RayonRows,
     &rayweave_mutex_image::MutexImage,
     &rayweave_tile_queue::TileQueue,
 ];
