@@ -9,6 +9,7 @@ pub static STRATEGIES: &[&dyn Strategy] = &[
     &rayweave_row_counter::RowCounter,
     &rayweave_rayon_pixels::RayonPixels,
     &rayweave_rayon_rows::RayonRows,
+    &rayweave_rayon_tiles::RayonTiles,
     &rayweave_mutex_image::MutexImage,
     &rayweave_tile_queue::TileQueue,
 ];
