@@ -12,6 +12,7 @@ pub static STRATEGIES: &[&dyn Strategy] = &[
     &rayweave_rayon_tiles::RayonTiles,
     &rayweave_mutex_image::MutexImage,
     &rayweave_tile_queue::TileQueue,
+    &rayweave_work_stealing::WorkStealing,
 ];
 
 /// The strategy that every other one is compared with.
