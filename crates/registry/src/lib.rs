@@ -11,6 +11,7 @@ pub static STRATEGIES: &[&dyn Strategy] = &[
     &rayweave_rayon_rows::RayonRows,
     &rayweave_rayon_tiles::RayonTiles,
     &rayweave_mutex_image::MutexImage,
+    &rayweave_std_mutex_image::StdMutexImage,
     &rayweave_mutex_rows::MutexRows,
     &rayweave_tile_queue::TileQueue,
     &rayweave_work_stealing::WorkStealing,
