@@ -13,6 +13,7 @@ pub static STRATEGIES: &[&dyn Strategy] = &[
     &rayweave_mutex_image::MutexImage,
     &rayweave_std_mutex_image::StdMutexImage,
     &rayweave_mutex_rows::MutexRows,
+    &rayweave_channel_rows::ChannelRows,
     &rayweave_tile_queue::TileQueue,
     &rayweave_work_stealing::WorkStealing,
 ];
