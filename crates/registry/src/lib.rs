@@ -18,6 +18,12 @@ pub static STRATEGIES: &[&dyn Strategy] = &[
     &rayweave_work_stealing::WorkStealing,
 ];
 
+/// Those that can be prepared here: what is meant by all strategies.
+#[must_use]
+pub fn available() -> Vec<&'static dyn Strategy> {
+    STRATEGIES.iter().copied().filter(|strategy| strategy.unavailable().is_none()).collect()
+}
+
 /// The strategy that every other one is compared with.
 #[must_use]
 pub fn reference() -> &'static dyn Strategy {
