@@ -16,6 +16,9 @@ pub static STRATEGIES: &[&dyn Strategy] = &[
     &rayweave_channel_rows::ChannelRows,
     &rayweave_tile_queue::TileQueue,
     &rayweave_work_stealing::WorkStealing,
+    &rayweave_openmp::STATIC,
+    &rayweave_openmp::DYNAMIC,
+    &rayweave_openmp::GUIDED,
 ];
 
 /// Those that can be prepared here: what is meant by all strategies.
