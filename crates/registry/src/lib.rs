@@ -16,6 +16,7 @@ pub static STRATEGIES: &[&dyn Strategy] = &[
     &rayweave_channel_rows::ChannelRows,
     &rayweave_tile_queue::TileQueue,
     &rayweave_work_stealing::WorkStealing,
+    &rayweave_paralight_tiles::ParalightTiles,
     &rayweave_openmp::STATIC,
     &rayweave_openmp::DYNAMIC,
     &rayweave_openmp::GUIDED,
