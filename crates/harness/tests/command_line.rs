@@ -329,6 +329,32 @@ fn each_malformed_scene_gives_one_message_and_no_picture() {
     assert!(files_in(folder.path()).is_empty());
 }
 
+/// Catches a rendering on fewer threads than were asked for, or that a setting changes their number.
+#[test]
+fn openmp_has_the_threads_asked_for_or_none() {
+    let strategy = rayweave_registry::find("openmp-static").expect("a strategy");
+    if strategy.unavailable().is_some() {
+        return;
+    }
+    let folder = folder();
+    let run = |variable: &str, value: &str, arguments: &str| {
+        let mut program = Command::new(env!("CARGO_BIN_EXE_rayweave"));
+        program.args(arguments.split(' ')).env(variable, value).current_dir(folder.path());
+        Run::of(program.output().expect("the program starts"))
+    };
+    let message =
+        run("OMP_THREAD_LIMIT", "2", "render --strategy openmp-static --threads 3").expect_refusal();
+    assert!(message.starts_with("error: openmp-static: cannot start 3 threads: OpenMP gave 2 "), "{message}");
+    let check =
+        "check --size 16x16 --tile 4 --threads 3 --strategy openmp-static,openmp-dynamic,openmp-guided";
+    for (variable, value) in
+        [("OMP_NUM_THREADS", "1"), ("OMP_DYNAMIC", "true"), ("OMP_WAIT_POLICY", "active")]
+    {
+        let text = run(variable, value, check).expect_success();
+        assert!(text.contains("all identical"), "{variable}: {text}");
+    }
+}
+
 /// A user who may start few threads: the rest cannot be started.
 #[cfg(target_os = "linux")]
 #[test]
