@@ -1,4 +1,4 @@
-//! `cargo bench`: every strategy of the registry with 1, 2 and all threads, on both loads.
+//! `cargo bench`: every strategy that is available with 1, 2 and all threads, on both loads.
 //!
 //! A bench is called `load/strategy/threads`, so criterion's filter picks: `cargo bench corner`,
 //! `cargo bench tile-queue/2`. The throughput is in pixels. Pools are built before the clock runs.
@@ -8,7 +8,6 @@
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use rayweave_benches::{Load, loads};
 use rayweave_core::{Digest, Image, Plan, ThreadsStart};
-use rayweave_registry::STRATEGIES;
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::thread::available_parallelism;
 use std::time::Duration;
@@ -29,7 +28,7 @@ fn strategies(criterion: &mut Criterion) {
         group.sample_size(10).warm_up_time(Duration::from_secs(1)).measurement_time(Duration::from_secs(5));
         let mut image = Image::new(load.width, load.height).expect("a small picture");
         let mut expected = None;
-        for &strategy in STRATEGIES {
+        for strategy in rayweave_registry::available() {
             let alone = strategy.threads_start() == ThreadsStart::Never;
             for &threads in if alone { &[1][..] } else { &counts } {
                 let plan = Plan { threads: NonZeroUsize::new(threads).expect("not 0"), tile: TILE };

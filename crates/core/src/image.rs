@@ -268,6 +268,23 @@ impl<'a> Tile<'a> {
         Self { area, rows: Rows::One(colors) }
     }
 
+    /// The tile of whole rows of a picture from row `y` down, wherever their colours are kept: row after
+    /// row, each of `width` pixels.
+    ///
+    /// # Panics
+    ///
+    /// Unless `colors` are one row or more, and no part of one.
+    #[must_use]
+    pub fn band(y: u32, width: u32, colors: &'a mut [Rgb]) -> Self {
+        let row = width as usize;
+        assert!(!colors.is_empty() && colors.len().is_multiple_of(row), "whole rows of {width} pixels");
+        let height = colors.len() / row;
+        let mut rows = colors.chunks_exact_mut(row);
+        let mut band = Self::of_rows(0, y, rows.next().unwrap_or_default(), height);
+        rows.for_each(|row| band.rows.push(row));
+        band
+    }
+
     /// A tile of `height` rows, so far with the first of them.
     fn of_rows(x: u32, y: u32, first: &'a mut [Rgb], height: usize) -> Self {
         let area = Area { x, y, width: first.len() as u32, height: height as u32 };

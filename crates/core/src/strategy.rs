@@ -22,11 +22,18 @@ pub trait Strategy: Sync {
     /// How it deals out the work: what a simulation of it goes by.
     fn rule(&self) -> Rule;
 
+    /// What is missing on this machine, or was when it was built, and how to get it; nothing if it can be
+    /// prepared.
+    fn unavailable(&self) -> Option<&'static str> {
+        None
+    }
+
     /// Makes ready to render with exactly `plan.threads` computing threads; a thread pool is built here.
     ///
     /// # Errors
     ///
-    /// A pool that cannot be built.
+    /// A pool that cannot be built; [`StrategyError::Unavailable`] if the strategy is
+    /// [unavailable](Self::unavailable).
     fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError>;
 }
 

@@ -208,10 +208,26 @@ pub fn checked_tile(tile: NonZeroU32, width: u32, height: u32) -> Result<NonZero
 
 /// A strategy by its name, for clap.
 pub fn parse_strategy(name: &str) -> Result<&'static dyn Strategy, String> {
-    rayweave_registry::find(name).ok_or_else(|| {
+    let strategy = rayweave_registry::find(name).ok_or_else(|| {
         let names: Vec<&str> = STRATEGIES.iter().map(|strategy| strategy.name()).collect();
         format!("there is no such strategy; there are {}", names.join(", "))
-    })
+    })?;
+    strategy.unavailable().map_or(Ok(strategy), |reason| Err(format!("unavailable here: {reason}")))
+}
+
+/// Those that were asked for, each once; without any, all that are available here.
+pub fn chosen(asked_for: &[&'static dyn Strategy]) -> Vec<&'static dyn Strategy> {
+    if asked_for.is_empty() { rayweave_registry::available() } else { distinct(asked_for, |s| s.name()) }
+}
+
+/// The line that says which strategies are left out where all are meant; empty if none is.
+pub fn left_out_line(asked_for: &[&'static dyn Strategy]) -> String {
+    let unavailable = STRATEGIES.iter().filter(|strategy| strategy.unavailable().is_some());
+    let names: Vec<&str> = unavailable.map(|strategy| strategy.name()).collect();
+    if names.is_empty() || !asked_for.is_empty() {
+        return String::new();
+    }
+    format!("left out, since unavailable here: {} (`rayweave strategies` says why)\n", names.join(", "))
 }
 
 /// A number of threads, for clap.

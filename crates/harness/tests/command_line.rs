@@ -34,7 +34,7 @@ fn render_works_from_any_folder_and_names_the_picture_after_the_scene() {
 fn render_gives_the_same_file_with_every_strategy() {
     let folder = folder();
     let mut files = Vec::new();
-    for strategy in rayweave_registry::STRATEGIES {
+    for strategy in rayweave_registry::available() {
         let name = strategy.name();
         for format in ["ppm", "exr", "png"] {
             let arguments = format!("render --size 33x21 --strategy {name} --threads 3 -o {name}.{format}");
@@ -109,7 +109,7 @@ fn compare_writes_what_other_programs_read() {
     assert!(object["scene"].is_string() && object["machine"].is_object());
     let results = object["results"].as_array().expect("a list");
     // The reference, its control, and the other strategies with one and with two threads.
-    assert_eq!(results.len(), 2 + 2 * (rayweave_registry::STRATEGIES.len() - 1));
+    assert_eq!(results.len(), 2 + 2 * (rayweave_registry::available().len() - 1));
     let digest = &results[0]["digest"];
     for result in results {
         assert_eq!(result["identical"], true);
@@ -172,7 +172,7 @@ fn compare_counts_the_rays_of_the_tiles_that_each_strategy_cuts() {
         ("--antialiasing 0", 1),
     ] {
         let (_, object) = run(options);
-        for strategy in rayweave_registry::STRATEGIES {
+        for strategy in rayweave_registry::available() {
             assert_eq!(rays(&object, strategy.name()), (24 * 16 * a_pixel, 0), "{options}");
         }
     }
@@ -235,7 +235,7 @@ fn compare_sets_shared_samples_beside_their_own() {
     let tile = lattice_points(2, &[(24, 16)]);
     assert_eq!(rays(&object, "tile-queue"), (tile, 0), "one tile is the whole picture");
     let results = |object: &Value| object["results"].as_array().expect("a list").len();
-    assert_eq!(results(&object), 2 + rayweave_registry::STRATEGIES.len() - 1);
+    assert_eq!(results(&object), 2 + rayweave_registry::available().len() - 1);
     let csv = fs::read_to_string(folder.path().join("a.csv")).expect("the file");
     assert_eq!(csv.lines().count(), 1 + results(&object) + results(other));
 }
@@ -333,6 +333,32 @@ fn each_malformed_scene_gives_one_message_and_no_picture() {
     assert!(files_in(folder.path()).is_empty());
 }
 
+/// Catches a rendering on fewer threads than were asked for, or that a setting changes their number.
+#[test]
+fn openmp_has_the_threads_asked_for_or_none() {
+    let strategy = rayweave_registry::find("openmp-static").expect("a strategy");
+    if strategy.unavailable().is_some() {
+        return;
+    }
+    let folder = folder();
+    let run = |variable: &str, value: &str, arguments: &str| {
+        let mut program = Command::new(env!("CARGO_BIN_EXE_rayweave"));
+        program.args(arguments.split(' ')).env(variable, value).current_dir(folder.path());
+        Run::of(program.output().expect("the program starts"))
+    };
+    let message =
+        run("OMP_THREAD_LIMIT", "2", "render --strategy openmp-static --threads 3").expect_refusal();
+    assert!(message.starts_with("error: openmp-static: cannot start 3 threads: OpenMP gave 2 "), "{message}");
+    let check =
+        "check --size 16x16 --tile 4 --threads 3 --strategy openmp-static,openmp-dynamic,openmp-guided";
+    for (variable, value) in
+        [("OMP_NUM_THREADS", "1"), ("OMP_DYNAMIC", "true"), ("OMP_WAIT_POLICY", "active")]
+    {
+        let text = run(variable, value, check).expect_success();
+        assert!(text.contains("all identical"), "{variable}: {text}");
+    }
+}
+
 /// A user who may start few threads: the rest cannot be started.
 #[cfg(target_os = "linux")]
 #[test]
@@ -351,8 +377,8 @@ fn threads_that_cannot_be_started_are_an_error_that_names_the_strategy() {
         let output = Command::new("sh").args(["-c", &command]).current_dir(folder.path()).output();
         Run::of(output.expect("a shell"))
     };
-    let parallel = rayweave_registry::STRATEGIES
-        .iter()
+    let parallel = rayweave_registry::available()
+        .into_iter()
         .filter(|strategy| strategy.threads_start() != rayweave_core::ThreadsStart::Never);
     for strategy in parallel {
         let name = strategy.name();

@@ -5,10 +5,29 @@ use rayweave_core::Strategy;
 /// Every strategy, in the order of every list: the reference first, then from the simplest on.
 pub static STRATEGIES: &[&dyn Strategy] = &[
     &rayweave_sequential::Sequential,
+    &rayweave_scoped_bands::ScopedBands,
+    &rayweave_row_counter::RowCounter,
     &rayweave_rayon_pixels::RayonPixels,
+    &rayweave_rayon_rows::RayonRows,
+    &rayweave_rayon_tiles::RayonTiles,
     &rayweave_mutex_image::MutexImage,
+    &rayweave_std_mutex_image::StdMutexImage,
+    &rayweave_mutex_rows::MutexRows,
+    &rayweave_channel_rows::ChannelRows,
     &rayweave_tile_queue::TileQueue,
+    &rayweave_work_stealing::WorkStealing,
+    &rayweave_paralight_tiles::ParalightTiles,
+    &rayweave_orx_parallel_tiles::OrxParallelTiles,
+    &rayweave_openmp::STATIC,
+    &rayweave_openmp::DYNAMIC,
+    &rayweave_openmp::GUIDED,
 ];
+
+/// Those that can be prepared here: what is meant by all strategies.
+#[must_use]
+pub fn available() -> Vec<&'static dyn Strategy> {
+    STRATEGIES.iter().copied().filter(|strategy| strategy.unavailable().is_none()).collect()
+}
 
 /// The strategy that every other one is compared with.
 #[must_use]

@@ -4,7 +4,7 @@
 use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule, render_tile};
 use rayweave_core::{Area, Image, Plan, Renderer, Rgb, Strategy, StrategyError, ThreadsStart, Tile, Work};
 use rayweave_measure::{Case, Check, Fault, Finding};
-use rayweave_registry::{STRATEGIES, reference};
+use rayweave_registry::{available, reference};
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::panic::resume_unwind;
 use std::sync::mpsc;
@@ -453,7 +453,7 @@ fn the_real_strategies_agree() {
         |(width, height)| Case { name: "gradient".to_owned(), width, height, work: Box::new(Gradient) };
     let check = Check {
         reference: reference(),
-        strategies: STRATEGIES,
+        strategies: &available(),
         cases: &sizes.map(case),
         threads: &THREADS.map(threads),
         tiles: &[1, 8, 32, 1000].map(tile),
@@ -468,8 +468,8 @@ fn the_real_strategies_agree() {
         })
         .expect("a reference picture");
     assert_eq!(verdict.findings, []);
-    let starting = STRATEGIES.iter().filter(|s| s.threads_start() != ThreadsStart::Never).count();
-    let settings = (starting * THREADS.len() + STRATEGIES.len() - starting) * 4;
+    let alone = available().iter().filter(|s| s.threads_start() == ThreadsStart::Never).count();
+    let settings = ((available().len() - alone) * THREADS.len() + alone) * 4;
     assert_eq!(verdict.compared, settings * sizes.len() * 2);
     assert_eq!(verdict.compared, told);
 }
@@ -495,9 +495,9 @@ impl<W: Work> Work for Panics<W> {
 fn the_real_strategies_survive_work_that_panics() {
     let (done, finished) = mpsc::channel();
     let survive = move || {
-        for strategy in STRATEGIES {
+        for strategy in available() {
             for count in THREADS {
-                survives(*strategy, threads(count));
+                survives(strategy, threads(count));
             }
         }
         let _ = done.send(());
@@ -536,7 +536,7 @@ fn all_at_once_panics_end_too() {
         }
     }
     let mut image = Image::new(97, 61).expect("a picture");
-    for strategy in STRATEGIES {
+    for strategy in available() {
         let plan = Plan { threads: threads(8), tile: tile(8) };
         let mut renderer = strategy.prepare(plan).expect("a renderer");
         let error = renderer.render(&AlwaysPanics, &mut image).expect_err("a panic").to_string();

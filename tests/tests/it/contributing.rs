@@ -1,6 +1,6 @@
 //! Takes the steps of CONTRIBUTING.md, "How to add a strategy", as they stand there, in a copy of
 //! the workspace. Catches a contract that changed under its description, and any place besides
-//! the registry that has to know a strategy.
+//! the registry that has to know a strategy. In the same copy: a machine whose C compiler has no OpenMP.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -47,21 +47,22 @@ fn blocks(text: &str, language: &str) -> Vec<String> {
 
 /// Puts `line` after the one line that is `after`.
 fn insert(file: &Path, after: &str, line: &str) {
-    let text = fs::read_to_string(file).expect("the file");
-    assert_eq!(
-        text.lines().filter(|found| found.trim() == after).count(),
-        1,
-        "{after} in {}",
-        file.display()
-    );
-    fs::write(file, text.replacen(after, &format!("{after}\n{line}"), 1)).expect("written");
+    replace(file, after, &format!("{after}\n{line}"));
 }
 
-fn cargo(workspace: &Path, arguments: &[&str]) -> Output {
+/// Puts `new` in place of the one line that is `old`.
+fn replace(file: &Path, old: &str, new: &str) {
+    let text = fs::read_to_string(file).expect("the file");
+    assert_eq!(text.lines().filter(|found| found.trim() == old).count(), 1, "{old} in {}", file.display());
+    fs::write(file, text.replacen(old, new, 1)).expect("written");
+}
+
+fn cargo(workspace: &Path, environment: &[(&str, &Path)], arguments: &[&str]) -> Output {
     Command::new(env!("CARGO"))
         // Here our own crates need not be fast, but soon there.
         .args(["--config", "profile.dev.opt-level = 0"])
         .args(arguments)
+        .envs(environment.iter().copied())
         .current_dir(workspace)
         // Beside the folder of this build, whose binary other tests are running.
         .env("CARGO_TARGET_DIR", target_folder().join("contributing"))
@@ -97,6 +98,16 @@ fn link(from: &Path, to: &Path) {
     }
 }
 
+/// What the workspace's `rayweave` prints, built in this environment; without a warning.
+fn run(workspace: &Path, environment: &[(&str, &Path)], arguments: &[&str]) -> String {
+    let build = ["run", "--offline", "--quiet", "-p", "rayweave", "--"];
+    let output = cargo(workspace, environment, &[&build, arguments].concat());
+    let (out, err) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success(), "{arguments:?}: {out}{err}");
+    assert_eq!(err, "", "{arguments:?}");
+    out.into_owned()
+}
+
 #[test]
 fn the_steps_add_a_strategy() {
     share_dependencies();
@@ -118,19 +129,40 @@ fn the_steps_add_a_strategy() {
     fs::write(strategy.join("src/lib.rs"), source).expect("written");
     insert(&workspace.join("Cargo.toml"), "# One line a strategy.", dependency.trim());
     insert(&workspace.join("crates/registry/Cargo.toml"), "[dependencies]", member_dependency.trim());
-    // At the end of the slice: after the last strategy that is there.
-    insert(&workspace.join("crates/registry/src/lib.rs"), "&rayweave_tile_queue::TileQueue,", registry_line);
+    // At the end of the slice.
+    replace(&workspace.join("crates/registry/src/lib.rs"), "];", &format!("{registry_line}];"));
 
-    let run = |arguments: &[&str]| {
-        let output =
-            cargo(workspace, &[&["run", "--offline", "--quiet", "-p", "rayweave", "--"], arguments].concat());
-        let (out, err) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
-        assert!(output.status.success(), "{arguments:?}: {out}{err}");
-        // No warning either.
-        assert_eq!(err, "", "{arguments:?}");
-        out.into_owned()
-    };
-    assert!(run(&["strategies"]).lines().any(|line| line.starts_with(STRATEGY)));
-    let check = run(&["check", "--strategy", STRATEGY, "--size", "64x48"]);
+    let rayweave = |arguments: &[&str]| run(workspace, &[], arguments);
+    assert!(rayweave(&["strategies"]).lines().any(|line| line.starts_with(STRATEGY)));
+    let check = rayweave(&["check", "--strategy", STRATEGY, "--size", "64x48"]);
     assert!(check.contains("all identical"), "{check}");
+
+    #[cfg(unix)]
+    without_openmp(workspace);
+}
+
+/// What is built by a compiler that knows no OpenMP has the other strategies.
+#[cfg(unix)]
+fn without_openmp(workspace: &Path) {
+    use std::os::unix::fs::PermissionsExt;
+    let compiler = workspace.join("cc-without-openmp");
+    let script = "#!/bin/sh\nfor word; do [ \"$word\" != -fopenmp ] || exit 1; done\nexec cc \"$@\"\n";
+    fs::write(&compiler, script).expect("written");
+    fs::set_permissions(&compiler, fs::Permissions::from_mode(0o755)).expect("permitted");
+
+    let rayweave = |arguments: &[&str]| run(workspace, &[("CC", &compiler)], arguments);
+    let list = rayweave(&["strategies"]);
+    let reason =
+        format!("built without OpenMP: the C compiler {} does not know -fopenmp", compiler.display());
+    assert_eq!(list.matches(&reason).count(), 3, "{list}");
+    let named =
+        ["run", "--offline", "--quiet", "-p", "rayweave", "--", "render", "--strategy", "openmp-guided"];
+    let refused = cargo(workspace, &[("CC", &compiler)], &named);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&refused.stderr).contains(&format!("unavailable here: {reason}")));
+
+    let check = rayweave(&["check", "--size", "4x3", "--threads", "2", "--tile", "2"]);
+    assert!(check.contains("all identical"), "{check}");
+    let left_out = "left out, since unavailable here: openmp-static, openmp-dynamic, openmp-guided ";
+    assert!(check.contains(left_out), "{check}");
 }

@@ -5,7 +5,6 @@
 //! tracer, against pictures that no strategy had a hand in.
 
 use rayweave_core::{Area, Image, Plan, Precision, Rgb, Scene, Tile, Work, tracer};
-use rayweave_registry::STRATEGIES;
 use rayweave_tests::picture::pixel_by_pixel;
 use rayweave_tests::{random_scene::random_scene, scenes};
 use std::num::{NonZeroU32, NonZeroUsize};
@@ -32,7 +31,7 @@ fn strategies_agree(name: &str, precision: Precision) {
         let right = pixel_by_pixel(&*work, width, height);
         (work, right)
     });
-    for strategy in STRATEGIES {
+    for strategy in rayweave_registry::available() {
         for (threads, tile) in THREADS.iter().flat_map(|threads| TILES.map(|tile| (*threads, tile))) {
             let context = format!("{name}: {}, {threads} threads, tiles of {tile}", strategy.name());
             let plan = Plan {

@@ -1,7 +1,9 @@
 //! `rayweave check`: proof that all strategies draw the same picture.
 
 use crate::input::Input;
-use crate::options::{SceneOptions, all_threads, checked_tile, distinct, parse_strategy, parse_threads};
+use crate::options::{
+    SceneOptions, all_threads, checked_tile, chosen, distinct, left_out_line, parse_strategy, parse_threads,
+};
 use crate::output::{PendingFile, distinct_files};
 use crate::{Outcome, print, progress};
 use clap::Args;
@@ -9,7 +11,6 @@ use rayweave_core::Strategy;
 use rayweave_measure::check::{Case, Check, Verdict};
 use rayweave_measure::computing_threads::TIMEOUT;
 use rayweave_measure::machine::Machine;
-use rayweave_registry::STRATEGIES;
 use rayweave_report as report;
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::path::PathBuf;
@@ -45,8 +46,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     // Before anything is checked: whether the full picture can be made at all.
     input.picture()?;
     arguments.tile.iter().try_for_each(|&tile| checked_tile(tile, input.width, input.height).map(drop))?;
-    let strategies =
-        distinct(if arguments.strategy.is_empty() { STRATEGIES } else { &arguments.strategy }, |s| s.name());
+    let strategies = chosen(&arguments.strategy);
 
     let mut verdict = Verdict { compared: 0, findings: Vec::new() };
     let mut check = |sizes: &[(u32, u32)], threads: &[usize], tiles: &[u32]| -> Result<(), String> {
@@ -74,7 +74,9 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
 
     let machine = Machine::here();
     let facts = report::machine::text(&machine);
-    print(&format!("{}\n{facts}\n\n{}\n", input.describe(), report::check::text(&verdict).trim_end()))?;
+    let left_out = left_out_line(&arguments.strategy);
+    let text = report::check::text(&verdict);
+    print(&format!("{}\n{facts}\n\n{}\n{left_out}", input.describe(), text.trim_end()))?;
     json.map_or(Ok(()), |file| file.finish(report::check::json(&verdict, &machine).as_bytes()))?;
     Ok(if verdict.holds() { Outcome::Held } else { Outcome::Failed })
 }

@@ -2,7 +2,8 @@
 
 use crate::input::Input;
 use crate::options::{
-    SceneOptions, SharingOption, TileOption, all_threads, distinct, parse_strategy, parse_threads,
+    SceneOptions, SharingOption, TileOption, all_threads, chosen, distinct, left_out_line, parse_strategy,
+    parse_threads,
 };
 use crate::output::{PendingFile, distinct_files};
 use crate::{Outcome, print, progress};
@@ -12,7 +13,6 @@ use rayweave_measure::Protocol;
 use rayweave_measure::compare::{Comparison, Entry, Executor};
 use rayweave_measure::machine::Machine;
 use rayweave_measure::stopwatch::Stopwatch;
-use rayweave_registry::STRATEGIES;
 use rayweave_report::compare::{BothReport, Report, Subject};
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::path::{Path, PathBuf};
@@ -81,7 +81,8 @@ pub fn run(scene: Option<&Path>, options: &Options) -> Result<Outcome, String> {
         _ => [reports[0].table(), reports[0].json(), reports[0].csv()],
     };
     let skipped = input.skipped_line().map(|line| line + "\n").unwrap_or_default();
-    print(&format!("{table}\n{}\n{skipped}", input.arithmetic_line()))?;
+    let left_out = left_out_line(&options.strategy);
+    print(&format!("{table}\n{}\n{skipped}{left_out}", input.arithmetic_line()))?;
     json.map_or(Ok(()), |file| file.finish(json_text.as_bytes()))?;
     csv.map_or(Ok(()), |file| file.finish(csv_text.as_bytes()))?;
     Ok(if comparisons.iter().all(Comparison::holds) { Outcome::Held } else { Outcome::Failed })
@@ -116,8 +117,7 @@ fn measure(
     tile: NonZeroU32,
     options: &Options,
 ) -> Result<Vec<Comparison>, String> {
-    let strategies =
-        distinct(if options.strategy.is_empty() { STRATEGIES } else { &options.strategy }, |s| s.name());
+    let strategies = chosen(&options.strategy);
     let threads =
         if options.threads.is_empty() { vec![all_threads()] } else { distinct(&options.threads, |n| *n) };
     let pairs = strategies.iter().flat_map(|&strategy| threads.iter().map(move |&n| (strategy, n)));

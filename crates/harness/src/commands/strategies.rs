@@ -16,7 +16,9 @@ pub fn run() -> Result<Outcome, String> {
         };
         text += &format!("{:width$}  {}\n{:width$}  {threads}\n", strategy.name(), strategy.summary(), "");
         // Tried out, not guessed: what cannot be prepared here says why.
-        if let Err(reason) = strategy.prepare(Plan { threads: NonZeroUsize::MIN, tile: NonZeroU32::MIN }) {
+        let plan = Plan { threads: NonZeroUsize::MIN, tile: NonZeroU32::MIN };
+        let failure = || strategy.prepare(plan).err().map(|error| error.to_string());
+        if let Some(reason) = strategy.unavailable().map(str::to_owned).or_else(failure) {
             text += &format!("{:width$}  unavailable here: {reason}\n", "");
         }
     }

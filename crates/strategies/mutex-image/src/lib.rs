@@ -50,16 +50,14 @@ struct StaticShares {
 impl Renderer for StaticShares {
     fn render(&mut self, work: &dyn Work, image: &mut Image) -> Result<(), StrategyError> {
         let (width, pixels) = (image.width() as usize, image.pixels().len());
-        let threads = self.threads.get();
-        let begin = |share: usize| pixels * share / threads;
-        let shares = (0..threads).map(|share| begin(share)..begin(share + 1));
+        let shares = thread_team::equal_shares(pixels, self.threads);
         let image = Mutex::new(image);
-        thread_team::run(NAME, shares, |member, share| {
+        thread_team::run(NAME, shares, |team, share| {
             for index in share {
                 // Computed into a place of the thread's own: the lock is held for the copy only.
                 let (x, y) = ((index % width) as u32, (index / width) as u32);
                 let mut color = [0.0; 3];
-                member.render_tile(work, &mut Tile::pixel(x, y, &mut color))?;
+                team.render_tile(work, &mut Tile::pixel(x, y, &mut color))?;
                 image.lock().pixels_mut()[index] = color;
             }
             Ok(())

@@ -11,11 +11,10 @@
 //! The pool is its own, with exactly the threads asked for: rayon's global pool has as many as
 //! the machine has cores, whatever a caller wants to measure.
 
+use rayon::ThreadPool;
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
-use rayon::{ThreadPool, ThreadPoolBuilder};
 use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule, render_tile};
 use rayweave_core::{Image, Plan, Renderer, Strategy, StrategyError, ThreadsStart, Tile, Work};
-use std::io;
 
 const NAME: &str = "rayon-pixels";
 
@@ -41,13 +40,7 @@ impl Strategy for RayonPixels {
     }
 
     fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
-        let threads = plan.threads.get();
-        let pool = ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .thread_name(|index| format!("{NAME} {index}"))
-            .build()
-            .map_err(|e| StrategyError::Spawn { strategy: NAME, threads, source: io::Error::other(e) })?;
-        Ok(Box::new(PixelLoop { pool }))
+        Ok(Box::new(PixelLoop { pool: rayweave_rayon_pool::build(NAME, plan.threads)? }))
     }
 }
 

@@ -58,9 +58,9 @@ impl Renderer for Queue {
             let _ = queue.push(tile);
         }
         let threads = iter::repeat_n(&queue, self.plan.threads.get());
-        thread_team::run(NAME, threads, |member, queue| {
+        thread_team::run(NAME, threads, |team, queue| {
             while let Some(mut tile) = queue.pop() {
-                member.render_tile(work, &mut tile)?;
+                team.render_tile(work, &mut tile)?;
             }
             Ok(())
         })

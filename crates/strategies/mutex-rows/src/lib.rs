@@ -1,0 +1,63 @@
+//! `mutex-rows`: as `mutex-image`, but the lock around the picture is taken once a row.
+//!
+//! * **What it decides**: everything beforehand. Thread `i` of `n` gets the `i`-th of `n` equal ranges
+//!   of rows, computes a row into memory of its own, and copies it under the lock.
+//! * **What it costs**: a lock and a copy for every row, starting the threads within every rendering,
+//!   every sample that a row shares with its neighbours, and all of the imbalance of the picture.
+//! * **When it is right**: when results go into something that cannot be cut into disjoint parts, such
+//!   as a map or a file. Beside `mutex-image` it shows that a lock costs by how often it is taken; what
+//!   is left is the price of dealing out beforehand.
+
+use parking_lot::Mutex;
+use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule};
+use rayweave_core::{Image, Plan, Renderer, Strategy, StrategyError, ThreadsStart, Tile, Work};
+use rayweave_thread_team as thread_team;
+use std::num::NonZeroUsize;
+
+const NAME: &str = "mutex-rows";
+
+/// Hand-spawned threads, a static share of the rows each, one lock around the picture.
+#[derive(Debug)]
+pub struct MutexRows;
+
+impl Strategy for MutexRows {
+    fn name(&self) -> &'static str {
+        NAME
+    }
+
+    fn summary(&self) -> &'static str {
+        "an equal share of the rows a thread, one lock around the picture taken for each row"
+    }
+
+    fn threads_start(&self) -> ThreadsStart {
+        ThreadsStart::Render
+    }
+
+    fn rule(&self) -> Rule {
+        Rule { piece: Piece::Row, dealing: Dealing::Equal, delivery: Delivery::Locked }
+    }
+
+    fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
+        Ok(Box::new(StaticShares { threads: plan.threads }))
+    }
+}
+
+struct StaticShares {
+    threads: NonZeroUsize,
+}
+
+impl Renderer for StaticShares {
+    fn render(&mut self, work: &dyn Work, image: &mut Image) -> Result<(), StrategyError> {
+        let (width, height) = (image.width() as usize, image.height() as usize);
+        let shares = thread_team::equal_shares(height, self.threads);
+        let image = Mutex::new(image);
+        thread_team::run(NAME, shares, |team, share| {
+            let mut row = vec![[0.0; 3]; width];
+            for y in share {
+                team.render_tile(work, &mut Tile::row(0, y as u32, &mut row))?;
+                image.lock().pixels_mut()[y * width..][..width].copy_from_slice(&row);
+            }
+            Ok(())
+        })
+    }
+}

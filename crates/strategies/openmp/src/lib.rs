@@ -1,0 +1,91 @@
+//! `openmp-static`, `openmp-dynamic`, `openmp-guided`: the report's own way, OpenMP's parallel loop, with
+//! the C compiler's OpenMP and the work in Rust.
+//!
+//! * **What it decides**: `static` everything beforehand: each thread gets one of N equal ranges of tiles.
+//!   `dynamic` nothing: whoever is free takes the next tile. `guided` begins with large pieces, what is
+//!   left over N, and ends with single tiles.
+//! * **What it costs**: a C compiler at build time, unsafe code at the border, an unmet lock a tile
+//!   (some 10 ns: that OpenMP gives each index to one thread, the compiler cannot know), and threads that
+//!   are started once. `static` has all of the imbalance of the picture, `dynamic` an atomic addition a
+//!   tile, `guided` fewer of them.
+//! * **When it is right**: when a program in C or C++ has OpenMP already, and Rust is called from its
+//!   loops. In Rust alone `tile-queue` or `rayon-tiles` do the same without `unsafe`.
+//!
+//! The caller's thread is one of the N. `OMP_PROC_BIND`, `OMP_PLACES` and `OMP_WAIT_POLICY` work as ever;
+//! the number of threads is the one asked for, whatever `OMP_NUM_THREADS` or `OMP_DYNAMIC` say, and an
+//! error where `OMP_THREAD_LIMIT` is lower. Built without OpenMP these strategies are unavailable, and say
+//! what was missing.
+
+use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule};
+use rayweave_core::{Plan, Renderer, Strategy, StrategyError, ThreadsStart};
+
+#[cfg(openmp)]
+#[allow(unsafe_code)] // To call C.
+mod ffi;
+#[cfg(openmp)]
+mod renderer;
+
+/// A loop of OpenMP over tiles.
+#[derive(Debug)]
+pub struct OpenMp(Schedule);
+
+/// With `schedule(static)`.
+pub static STATIC: OpenMp = OpenMp(Schedule::Static);
+/// With `schedule(dynamic, 1)`.
+pub static DYNAMIC: OpenMp = OpenMp(Schedule::Dynamic);
+/// With `schedule(guided, 1)`.
+pub static GUIDED: OpenMp = OpenMp(Schedule::Guided);
+
+#[derive(Clone, Copy, Debug)]
+enum Schedule {
+    Static,
+    Dynamic,
+    Guided,
+}
+
+impl Strategy for OpenMp {
+    fn name(&self) -> &'static str {
+        match self.0 {
+            Schedule::Static => "openmp-static",
+            Schedule::Dynamic => "openmp-dynamic",
+            Schedule::Guided => "openmp-guided",
+        }
+    }
+
+    fn summary(&self) -> &'static str {
+        match self.0 {
+            Schedule::Static => "OpenMP: an equal range of the tiles a thread",
+            Schedule::Dynamic => "OpenMP: threads take the next tile",
+            Schedule::Guided => "OpenMP: threads take the next tiles, ever fewer",
+        }
+    }
+
+    fn threads_start(&self) -> ThreadsStart {
+        ThreadsStart::Prepare
+    }
+
+    fn rule(&self) -> Rule {
+        let dealing = match self.0 {
+            Schedule::Static => Dealing::Equal,
+            Schedule::Dynamic => Dealing::Shared { chunk: 1 },
+            Schedule::Guided => Dealing::Guided,
+        };
+        Rule { piece: Piece::Tile, dealing, delivery: Delivery::InPlace }
+    }
+
+    fn unavailable(&self) -> Option<&'static str> {
+        // Why the build script found no OpenMP, if it found none.
+        option_env!("WITHOUT_OPENMP")
+    }
+
+    #[cfg(openmp)]
+    fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
+        Ok(Box::new(renderer::TileLoop::start(self.name(), self.0, plan)?))
+    }
+
+    #[cfg(not(openmp))]
+    fn prepare(&self, _: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
+        let reason = self.unavailable().unwrap_or_default();
+        Err(StrategyError::Unavailable { strategy: self.name(), reason })
+    }
+}

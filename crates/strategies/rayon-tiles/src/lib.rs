@@ -1,0 +1,62 @@
+//! `rayon-tiles`: a parallel loop over the tiles.
+//!
+//! * **What it decides**: that a tile is the smallest piece. rayon splits the list of tiles in halves
+//!   as long as idle threads steal them, never below [`MIN_LEN`].
+//! * **What it costs**: a pool that is started once (some 100 us), cutting the picture into tiles, and
+//!   at the end up to one tile's time of waiting.
+//! * **When it is right**: for uneven work whose pixels share something with their neighbours, in a
+//!   program that has rayon already: one line a loop, and the balance of a queue.
+//!
+//! The pool is its own, with exactly the threads asked for: rayon's global pool has as many as the
+//! machine has cores, whatever a caller wants to measure.
+
+use rayon::ThreadPool;
+use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
+use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule, render_tile};
+use rayweave_core::{Image, Plan, Renderer, Strategy, StrategyError, ThreadsStart, Work};
+use std::num::NonZeroU32;
+
+const NAME: &str = "rayon-tiles";
+
+/// The tiles that rayon does not split further: their size is the knob already.
+pub const MIN_LEN: usize = 1;
+
+/// One parallel item a tile, in a pool of its own.
+#[derive(Debug)]
+pub struct RayonTiles;
+
+impl Strategy for RayonTiles {
+    fn name(&self) -> &'static str {
+        NAME
+    }
+
+    fn summary(&self) -> &'static str {
+        "one rayon item a tile, halves of the list stolen by idle threads"
+    }
+
+    fn threads_start(&self) -> ThreadsStart {
+        ThreadsStart::Prepare
+    }
+
+    fn rule(&self) -> Rule {
+        Rule { piece: Piece::Tile, dealing: Dealing::Stealing, delivery: Delivery::InPlace }
+    }
+
+    fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
+        Ok(Box::new(TileLoop { pool: rayweave_rayon_pool::build(NAME, plan.threads)?, tile: plan.tile }))
+    }
+}
+
+struct TileLoop {
+    pool: ThreadPool,
+    tile: NonZeroU32,
+}
+
+impl Renderer for TileLoop {
+    fn render(&mut self, work: &dyn Work, image: &mut Image) -> Result<(), StrategyError> {
+        let mut tiles = image.tiles(self.tile);
+        self.pool.install(|| {
+            tiles.par_iter_mut().with_min_len(MIN_LEN).try_for_each(|tile| render_tile(NAME, work, tile))
+        })
+    }
+}
