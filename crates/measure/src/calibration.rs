@@ -4,8 +4,8 @@ use crate::overhead::{of_pixels, step};
 use crate::sheet::{Columns, Sheet};
 use crate::statistics::median;
 use crate::synthetic::Synthetic;
-use rayweave_core::{Renderer, Strategy};
 use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule};
+use rayweave_core::{Renderer, Strategy};
 use rayweave_predict::{Access, Overheads};
 use std::num::NonZeroUsize;
 
@@ -108,9 +108,8 @@ struct Times {
 impl Times {
     /// Of each figure by itself; what comes out below 0 is noise.
     fn median(times: &[Self]) -> Self {
-        let of = |of: fn(&Self) -> f64| {
-            median(&times.iter().map(of).collect::<Vec<_>>()).unwrap_or(0.0).max(0.0)
-        };
+        let of =
+            |of: fn(&Self) -> f64| median(&times.iter().map(of).collect::<Vec<_>>()).unwrap_or(0.0).max(0.0);
         Self {
             start: of(|times| times.start),
             next_start: of(|times| times.next_start),
@@ -133,7 +132,9 @@ fn overheads(rule: Rule, times: &Times) -> Overheads {
     let piece = (piece_one - piece_all).max(0.0);
     match (rule.delivery, rule.dealing) {
         (Delivery::Locked | Delivery::Sent, _) => Overheads { deliver: access(1.0), piece, ..all },
-        (Delivery::InPlace, Dealing::Shared { chunk }) => Overheads { take: access(chunk as f64), piece, ..all },
+        (Delivery::InPlace, Dealing::Shared { chunk }) => {
+            Overheads { take: access(chunk as f64), piece, ..all }
+        }
         (Delivery::InPlace, _) => all,
     }
 }

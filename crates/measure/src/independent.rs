@@ -64,7 +64,9 @@ impl Renderer for Copying {
             let others = others.collect::<Result<Vec<_>, _>>()?;
             let own = draw(image);
             for other in others {
-                other.join().map_err(|payload| cannot_start(io::Error::other(panic_message(&*payload))))??;
+                other
+                    .join()
+                    .map_err(|payload| cannot_start(io::Error::other(panic_message(&*payload))))??;
             }
             own
         })

@@ -73,7 +73,7 @@ pub struct Row {
     /// The number of computing threads.
     pub threads: usize,
     /// Or why there are none.
-    pub figures: Result<Figures, String>,
+    pub figures: Result<Figures, Failure>,
 }
 
 /// What a strategy costs; times in nanoseconds.
@@ -97,12 +97,31 @@ pub struct Figures {
     pub later: Interval,
 }
 
+/// Why a strategy has no figures.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum Failure {
+    /// It could not be prepared: it is not available here, or could not start its threads.
+    #[error("{0}")]
+    Preparing(String),
+    /// It failed, or drew a wrong picture.
+    #[error("{0}")]
+    Rendering(String),
+}
+
 /// Why nothing could be measured.
 #[derive(Debug, Error)]
 pub enum OverheadError {
     /// There is nothing to time steps with.
     #[error("the reference failed: {0}")]
     Reference(String),
+}
+
+impl Study {
+    /// Whether every picture of synthetic work was right. A strategy that is not available draws none.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        self.rows.iter().all(|row| !matches!(row.figures, Err(Failure::Rendering(_))))
+    }
 }
 
 impl Overhead<'_> {
@@ -116,7 +135,7 @@ impl Overhead<'_> {
         let mut sheets = Sheets::new(self.reference).map_err(OverheadError::Reference)?;
         let strategies: Vec<&dyn Strategy> =
             std::iter::once(self.reference).chain(self.strategies.iter().copied()).collect();
-        let mut samples: Vec<Result<Samples, String>> = vec![Ok(Samples::default()); strategies.len()];
+        let mut samples: Vec<Result<Samples, Failure>> = vec![Ok(Samples::default()); strategies.len()];
         let mut schedule = self.protocol.schedule(strategies.len());
         while let Some(turn) = schedule.next(begin.elapsed()) {
             let strategy = strategies[turn.entry];
@@ -132,7 +151,7 @@ impl Overhead<'_> {
         }
         let mut samples = samples.into_iter();
         let reference = samples.next().unwrap_or_else(|| Ok(Samples::default()));
-        let reference = reference.map_err(OverheadError::Reference)?;
+        let reference = reference.map_err(|failure| OverheadError::Reference(failure.to_string()))?;
         let rows = samples.zip(self.strategies).map(|(samples, &strategy)| Row {
             strategy: strategy.name(),
             piece: strategy.rule().piece,
@@ -147,27 +166,36 @@ impl Overhead<'_> {
     }
 
     /// Everything once, for one strategy.
-    fn turn(&self, strategy: &dyn Strategy, sheets: &mut Sheets) -> Result<Round, String> {
+    fn turn(&self, strategy: &dyn Strategy, sheets: &mut Sheets) -> Result<Round, Failure> {
         let threads = self.threads_of(strategy);
-        let dispatch_one = sheets.columns.dispatch(&mut *of_pixels(strategy, NonZeroUsize::MIN)?)?;
-        let mut renderer = of_pixels(strategy, threads)?;
-        let dispatch_all = sheets.columns.dispatch(&mut *renderer)?;
-        let mut times = |sheets: &mut [Sheet], renderer: &mut dyn Renderer| {
-            sheets.iter_mut().map(|sheet| sheet.time(renderer)).collect::<Result<Vec<_>, _>>()
+        let failed = |error| Failure::Rendering(format!("{}: {error}", strategy.name()));
+        let times = |sheets: &mut [Sheet], renderer: &mut dyn Renderer| {
+            sheets.iter_mut().map(|sheet| sheet.time(renderer).map_err(failed)).collect::<Result<Vec<_>, _>>()
         };
+        let mut one = of_pixels(strategy, NonZeroUsize::MIN).map_err(Failure::Preparing)?;
+        let dispatch_one = sheets.columns.dispatch(&mut *one).map_err(failed)?;
+        let mut renderer = of_pixels(strategy, threads).map_err(Failure::Preparing)?;
+        let dispatch_all = sheets.columns.dispatch(&mut *renderer).map_err(failed)?;
         let tasks = times(&mut sheets.tasks, &mut *renderer)?;
         let begin = Instant::now();
-        let mut renderer = attempt(|| strategy.prepare(Plan { threads, tile: TILE }))?;
+        let mut renderer =
+            attempt(|| strategy.prepare(Plan { threads, tile: TILE })).map_err(Failure::Preparing)?;
         let prepare = begin.elapsed().as_nanos() as f64;
-        let first = sheets.first.time(&mut *renderer)?;
-        // The second time is neither.
-        sheets.first.time(&mut *renderer)?;
-        let later = sheets.first.time(&mut *renderer)?;
+        // The second time is neither the first nor later.
+        let uses = (0..3).map(|_| sheets.first.time(&mut *renderer).map_err(failed));
+        let uses = uses.collect::<Result<Vec<_>, _>>()?;
+        let (first, later) = (uses[0], uses[2]);
         let pictures = times(&mut sheets.squares, &mut *renderer)?;
         Ok(Round { dispatch_one, dispatch_all, tasks, pictures, prepare, first, later })
     }
 
-    fn figures(&self, strategy: &dyn Strategy, samples: &Samples, reference: &Samples, step_ns: f64) -> Figures {
+    fn figures(
+        &self,
+        strategy: &dyn Strategy,
+        samples: &Samples,
+        reference: &Samples,
+        step_ns: f64,
+    ) -> Figures {
         let is_band = strategy.rule().piece == Piece::Band;
         let threads = self.threads_of(strategy).get();
         let interval = |of: fn(&Round) -> f64| {

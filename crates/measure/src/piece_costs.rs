@@ -77,7 +77,8 @@ impl PieceCosts {
         }
         if kinds.contains(&Piece::Band) {
             // Tiles larger than the picture: one.
-            costs.whole = image.tiles(NonZeroU32::MAX).iter_mut().map(|tile| time(|| work.render(tile))).sum();
+            costs.whole =
+                image.tiles(NonZeroU32::MAX).iter_mut().map(|tile| time(|| work.render(tile))).sum();
         }
         costs
     }

@@ -51,7 +51,11 @@ impl Sheet {
         let result = attempt(|| renderer.render(&*self.work, &mut self.image));
         let time = begin.elapsed().as_nanos() as f64;
         result?;
-        if self.image == self.expected { Ok(time) } else { Err("a wrong picture of synthetic work".to_owned()) }
+        if self.image == self.expected {
+            Ok(time)
+        } else {
+            Err("a wrong picture of synthetic work".to_owned())
+        }
     }
 }
 

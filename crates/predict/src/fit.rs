@@ -108,7 +108,8 @@ mod tests {
     fn the_shares_of_exact_points() {
         let close = |a: f64, b: f64| assert!((a - b).abs() <= 1e-9, "{a} is not {b}");
         let (serial, crosstalk) = (0.03, 0.0002);
-        let law = usl(&points(|n| n / (1.0 + serial * (n - 1.0) + crosstalk * n * (n - 1.0)))).expect("a law");
+        let law =
+            usl(&points(|n| n / (1.0 + serial * (n - 1.0) + crosstalk * n * (n - 1.0)))).expect("a law");
         close(law.serial, serial);
         close(law.crosstalk, crosstalk);
         close(law.error, 0.0);

@@ -126,7 +126,10 @@ fn who_sends_does_not_wait() {
 fn no_pieces_take_the_start_alone() {
     let overheads = Overheads { start: 7.0, ..Overheads::default() };
     for dealing in ALL {
-        assert_eq!(simulate(in_place(dealing), 3, &[], &overheads), Run { time: 7.0, computed: vec![0.0; 3] });
+        assert_eq!(
+            simulate(in_place(dealing), 3, &[], &overheads),
+            Run { time: 7.0, computed: vec![0.0; 3] }
+        );
     }
 }
 
