@@ -2,15 +2,15 @@
 
 use crate::overhead::{of_pixels, step};
 use crate::sheet::{Columns, Sheet};
-use crate::statistics::median;
+use crate::statistics::lower_quartile;
 use crate::synthetic::Synthetic;
 use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule};
 use rayweave_core::{Renderer, Strategy};
 use rayweave_predict::{Access, Overheads};
 use std::num::NonZeroUsize;
 
-/// Times that everything is measured; the median counts.
-const REPETITIONS: usize = 15;
+/// Times that everything is rendered; the lower quartile counts.
+const REPETITIONS: usize = 25;
 
 /// A piece long enough for every thread to get one, in nanoseconds.
 const LONG_PIECE: f64 = 200e3;
@@ -30,29 +30,33 @@ pub fn calibrate(
     mut progress: impl FnMut(f64),
 ) -> Result<Vec<Overheads>, String> {
     let mut sheets = Sheets::new(step(reference)?, threads)?;
-    let mut times = vec![Vec::new(); strategies.len()];
+    let mut rounds = vec![Vec::new(); strategies.len()];
     for repetition in 0..REPETITIONS {
         progress(repetition as f64 / REPETITIONS as f64);
-        for (&strategy, times) in strategies.iter().zip(&mut times) {
+        for (&strategy, rounds) in strategies.iter().zip(&mut rounds) {
             let mut one = of_pixels(strategy, NonZeroUsize::MIN)?;
             let mut all = of_pixels(strategy, threads)?;
-            times.push(sheets.times(strategy.rule(), &mut *one, &mut *all)?);
+            rounds.push(sheets.time(&mut *one, &mut *all)?);
         }
     }
-    Ok(strategies.iter().zip(&times).map(|(s, times)| overheads(s.rule(), &Times::median(times))).collect())
+    let of = |(strategy, rounds): (&&dyn Strategy, &Vec<Times>)| {
+        overheads(strategy.rule(), threads.get(), &Times::least_disturbed(rounds))
+    };
+    Ok(strategies.iter().zip(&rounds).map(of).collect())
 }
 
 /// What is rendered.
 struct Sheets {
     columns: Columns,
     single: Sheet,
-    /// A long piece for each thread, but for the first alone, and for all.
-    long_one: Sheet,
-    long_all: Sheet,
-    /// The same load spread evenly, and in the latter half of the pieces.
+    /// A long piece.
+    alone: Sheet,
+    /// One for each thread.
+    together: Sheet,
+    /// A load that is spread evenly.
     spread: Sheet,
+    /// The same load in the latter half of the pieces.
     late: Sheet,
-    threads: u32,
 }
 
 impl Sheets {
@@ -64,78 +68,83 @@ impl Sheets {
         Ok(Self {
             columns: Columns::new()?,
             single: Sheet::column(1, 0)?,
-            long_one: Sheet::column(1, long)?,
-            long_all: Sheet::column(threads, long)?,
+            alone: Sheet::column(1, long)?,
+            together: Sheet::column(threads, long)?,
             spread: Sheet::column(pieces, steps(ns / 2.0))?,
             late: Sheet::new(Synthetic(move |_, y| if y < pieces / 2 { 0 } else { late }), 1, pieces)?,
-            threads,
         })
     }
 
-    fn times(&mut self, rule: Rule, one: &mut dyn Renderer, all: &mut dyn Renderer) -> Result<Times, String> {
-        let mut times = Times { start: self.single.time(one)?, ..Times::default() };
-        if rule.piece != Piece::Band {
-            times.piece_one = self.columns.dispatch(one)?;
-            times.piece_all = self.columns.dispatch(all)?;
-        }
-        if self.threads > 1 {
-            // Whoever begins later ends later.
-            let alone = self.long_one.time(one)?;
-            times.next_start = (self.long_all.time(all)? - alone) / f64::from(self.threads - 1);
-            if matches!(rule.dealing, Dealing::Stealing | Dealing::Halving) {
-                times.steal = self.late.time(all)? - self.spread.time(all)?;
-            }
-        }
-        Ok(times)
+    fn time(&mut self, one: &mut dyn Renderer, all: &mut dyn Renderer) -> Result<Times, String> {
+        Ok(Times {
+            single: self.single.time(one)?,
+            columns_one: self.columns.time(one)?,
+            columns_all: self.columns.time(all)?,
+            alone: self.alone.time(one)?,
+            together: self.together.time(all)?,
+            spread: self.spread.time(all)?,
+            late: self.late.time(all)?,
+        })
     }
 }
 
-/// In nanoseconds.
-#[derive(Clone, Copy, Debug, Default)]
+/// In nanoseconds, of what [`Sheets`] has; of columns the short and the long one's.
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Times {
-    /// One thread renders next to nothing.
-    start: f64,
-    /// From one thread's beginning to the next's.
-    next_start: f64,
-    /// For each piece, on one thread.
-    piece_one: f64,
-    /// For each piece, on all.
-    piece_all: f64,
-    /// To take pieces from another thread.
-    steal: f64,
+    single: f64,
+    columns_one: [f64; 2],
+    columns_all: [f64; 2],
+    alone: f64,
+    together: f64,
+    spread: f64,
+    late: f64,
 }
 
 impl Times {
-    /// Of each figure by itself; what comes out below 0 is noise.
-    fn median(times: &[Self]) -> Self {
+    /// Each by itself, before anything is subtracted.
+    fn least_disturbed(rounds: &[Self]) -> Self {
         let of =
-            |of: fn(&Self) -> f64| median(&times.iter().map(of).collect::<Vec<_>>()).unwrap_or(0.0).max(0.0);
+            |of: fn(&Self) -> f64| lower_quartile(&rounds.iter().map(of).collect::<Vec<_>>()).unwrap_or(0.0);
         Self {
-            start: of(|times| times.start),
-            next_start: of(|times| times.next_start),
-            piece_one: of(|times| times.piece_one),
-            piece_all: of(|times| times.piece_all),
-            steal: of(|times| times.steal),
+            single: of(|times| times.single),
+            columns_one: [of(|times| times.columns_one[0]), of(|times| times.columns_one[1])],
+            columns_all: [of(|times| times.columns_all[0]), of(|times| times.columns_all[1])],
+            alone: of(|times| times.alone),
+            together: of(|times| times.together),
+            spread: of(|times| times.spread),
+            late: of(|times| times.late),
         }
     }
 }
 
 /// From outside nothing tells what of a piece's dispatch one thread at a time does. Where all threads share something,
 /// that much of it is taken for it as did not become faster by more threads, and what became slower is the handover.
-fn overheads(rule: Rule, times: &Times) -> Overheads {
-    let Times { start, next_start, piece_one, piece_all, steal } = *times;
-    let all = Overheads { start, next_start, piece: piece_one, steal, ..Overheads::default() };
-    let access = |pieces: f64| Access {
-        hold: piece_one.min(piece_all) * pieces,
-        handover: (piece_all - piece_one).max(0.0) * pieces,
+fn overheads(rule: Rule, threads: usize, times: &Times) -> Overheads {
+    // What comes out below 0 is noise.
+    let dispatch = |columns| Columns::slope(columns).max(0.0);
+    let (one, all) = match rule.piece {
+        Piece::Band => (0.0, 0.0),
+        _ => (dispatch(times.columns_one), dispatch(times.columns_all)),
     };
-    let piece = (piece_one - piece_all).max(0.0);
+    let others = threads.saturating_sub(1).max(1) as f64;
+    let steals = threads > 1 && matches!(rule.dealing, Dealing::Stealing | Dealing::Halving);
+    let overheads = Overheads {
+        start: times.single,
+        // Whoever begins later ends later.
+        next_start: (times.together - times.alone).max(0.0) / others,
+        piece: one,
+        steal: if steals { (times.late - times.spread).max(0.0) } else { 0.0 },
+        ..Overheads::default()
+    };
+    let access =
+        |pieces: f64| Access { hold: one.min(all) * pieces, handover: (all - one).max(0.0) * pieces };
+    let piece = (one - all).max(0.0);
     match (rule.delivery, rule.dealing) {
-        (Delivery::Locked | Delivery::Sent, _) => Overheads { deliver: access(1.0), piece, ..all },
+        (Delivery::Locked | Delivery::Sent, _) => Overheads { deliver: access(1.0), piece, ..overheads },
         (Delivery::InPlace, Dealing::Shared { chunk }) => {
-            Overheads { take: access(chunk as f64), piece, ..all }
+            Overheads { take: access(chunk as f64), piece, ..overheads }
         }
-        (Delivery::InPlace, _) => all,
+        (Delivery::InPlace, _) => overheads,
     }
 }
 
@@ -143,30 +152,55 @@ fn overheads(rule: Rule, times: &Times) -> Overheads {
 mod tests {
     use super::*;
 
-    const TIMES: Times = Times { start: 1.0, next_start: 2.0, piece_one: 10.0, piece_all: 14.0, steal: 3.0 };
+    /// The columns differ by 2^14 - 2^8 pieces.
+    const PIECES: f64 = 16_128.0;
 
-    fn of(dealing: Dealing, delivery: Delivery, piece_all: f64) -> Overheads {
-        overheads(Rule { piece: Piece::Row, dealing, delivery }, &Times { piece_all, ..TIMES })
+    fn times(all: f64) -> Times {
+        Times {
+            single: 7.0,
+            columns_one: [5.0, 5.0 + 10.0 * PIECES],
+            columns_all: [5.0, 5.0 + all * PIECES],
+            alone: 200.0,
+            together: 206.0,
+            spread: 300.0,
+            late: 303.0,
+        }
+    }
+
+    fn of(dealing: Dealing, delivery: Delivery, all: f64) -> Overheads {
+        overheads(Rule { piece: Piece::Row, dealing, delivery }, 3, &times(all))
     }
 
     /// Catches a dispatch that is counted twice, or in the wrong place.
     #[test]
     fn what_is_shared_takes_what_threads_do_not_speed_up() {
-        let all = Overheads { start: 1.0, next_start: 2.0, piece: 10.0, steal: 3.0, ..Overheads::default() };
-        assert_eq!(of(Dealing::Equal, Delivery::InPlace, 14.0), all);
-        assert_eq!(of(Dealing::Stealing, Delivery::InPlace, 6.0), all);
+        let plain = Overheads { start: 7.0, next_start: 3.0, piece: 10.0, ..Overheads::default() };
+        assert_eq!(of(Dealing::Equal, Delivery::InPlace, 14.0), plain);
+        assert_eq!(of(Dealing::Stealing, Delivery::InPlace, 6.0), Overheads { steal: 3.0, ..plain });
         let take = Access { hold: 20.0, handover: 8.0 };
         let shared = Dealing::Shared { chunk: 2 };
-        assert_eq!(of(shared, Delivery::InPlace, 14.0), Overheads { piece: 0.0, take, ..all });
+        assert_eq!(of(shared, Delivery::InPlace, 14.0), Overheads { piece: 0.0, take, ..plain });
         let deliver = Access { hold: 6.0, handover: 0.0 };
-        assert_eq!(of(shared, Delivery::Locked, 6.0), Overheads { piece: 4.0, deliver, ..all });
-        assert_eq!(of(Dealing::Equal, Delivery::Sent, 6.0), Overheads { piece: 4.0, deliver, ..all });
+        assert_eq!(of(shared, Delivery::Locked, 6.0), Overheads { piece: 4.0, deliver, ..plain });
+        assert_eq!(of(Dealing::Equal, Delivery::Sent, 6.0), Overheads { piece: 4.0, deliver, ..plain });
+    }
+
+    /// Catches a price of stealing, or of another thread's start, where there is no other thread, and one of pieces where
+    /// there is one a thread.
+    #[test]
+    fn bands_have_no_dispatch_and_one_thread_nobody_to_steal_from() {
+        let rule = |piece| Rule { piece, dealing: Dealing::Halving, delivery: Delivery::InPlace };
+        let faster = Times { together: 150.0, ..times(10.0) };
+        let expected = Overheads { start: 7.0, piece: 10.0, ..Overheads::default() };
+        assert_eq!(overheads(rule(Piece::Pixel), 1, &faster), expected);
+        assert_eq!(overheads(rule(Piece::Band), 1, &faster), Overheads { piece: 0.0, ..expected });
     }
 
     #[test]
-    fn medians_are_figure_by_figure_and_never_below_nothing() {
-        let times = [1.0, 2.0, 9.0].map(|start| Times { start, steal: start - 5.0, ..TIMES });
-        let median = Times::median(&times);
-        assert_eq!((median.start, median.steal, median.piece_one), (2.0, 0.0, 10.0));
+    fn the_least_disturbed_of_each() {
+        let rounds =
+            [1.0, 2.0, 3.0, 4.0, 5.0].map(|single| Times { single, late: 9.0 - single, ..times(10.0) });
+        let least = Times { single: 2.0, late: 5.0, ..times(10.0) };
+        assert_eq!(Times::least_disturbed(&rounds), least);
     }
 }

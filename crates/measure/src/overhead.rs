@@ -173,9 +173,9 @@ impl Overhead<'_> {
             sheets.iter_mut().map(|sheet| sheet.time(renderer).map_err(failed)).collect::<Result<Vec<_>, _>>()
         };
         let mut one = of_pixels(strategy, NonZeroUsize::MIN).map_err(Failure::Preparing)?;
-        let dispatch_one = sheets.columns.dispatch(&mut *one).map_err(failed)?;
+        let dispatch_one = Columns::slope(sheets.columns.time(&mut *one).map_err(failed)?);
         let mut renderer = of_pixels(strategy, threads).map_err(Failure::Preparing)?;
-        let dispatch_all = sheets.columns.dispatch(&mut *renderer).map_err(failed)?;
+        let dispatch_all = Columns::slope(sheets.columns.time(&mut *renderer).map_err(failed)?);
         let tasks = times(&mut sheets.tasks, &mut *renderer)?;
         let begin = Instant::now();
         let mut renderer =

@@ -70,10 +70,14 @@ impl Columns {
         Ok(Self { short: Sheet::column(SHORT, 0)?, long: Sheet::column(LONG, 0)? })
     }
 
-    /// Nanoseconds a piece of next to no work: what is paid once for a rendering cancels.
-    pub(crate) fn dispatch(&mut self, renderer: &mut dyn Renderer) -> Result<f64, String> {
-        let short = self.short.time(renderer)?;
-        Ok((self.long.time(renderer)? - short) / f64::from(LONG - SHORT))
+    /// Nanoseconds that `renderer` takes for the short one and for the long one.
+    pub(crate) fn time(&mut self, renderer: &mut dyn Renderer) -> Result<[f64; 2], String> {
+        Ok([self.short.time(renderer)?, self.long.time(renderer)?])
+    }
+
+    /// Nanoseconds a piece of next to no work, of the times of both: what is paid once for a rendering cancels.
+    pub(crate) fn slope([short, long]: [f64; 2]) -> f64 {
+        (long - short) / f64::from(LONG - SHORT)
     }
 }
 

@@ -1,6 +1,7 @@
 //! The forecast for people.
 
 use super::{ASSUMPTIONS, Report};
+use crate::compare::complaint;
 use crate::machine;
 use crate::style;
 use rayweave_measure::Interval;
@@ -13,7 +14,9 @@ pub(super) fn text(report: &Report<'_>) -> String {
     let mut parts = vec![heading(report), predictions(&forecast.curves), laws_legend().to_owned()];
     parts.extend(checks(&forecast.curves));
     parts.push(basis(report));
-    parts.extend((!forecast.unavailable.is_empty()).then(|| forecast.unavailable.join("\n")));
+    let complaints = forecast.comparison.rows.iter().filter_map(complaint);
+    let complaints: Vec<String> = complaints.chain(forecast.unavailable.iter().cloned()).collect();
+    parts.extend((!complaints.is_empty()).then(|| complaints.join("\n")));
     parts.push(format!("assumed: {}.", ASSUMPTIONS.join(";\n")));
     parts.push(machine::text(report.machine));
     parts.join("\n\n")
@@ -43,9 +46,13 @@ fn laws_of(curve: &Curve) -> [String; 4] {
     [
         figure(curve.amdahl.map(|law| format!("{:.4} ±{:.0} %", law.serial, 100.0 * law.error))),
         figure(curve.usl.map(|law| format!("{:.4}", law.serial))),
-        figure(curve.usl.map(|law| format!("{:.1e} ±{:.0} %", law.crosstalk, 100.0 * law.error))),
+        figure(curve.usl.map(|law| format!("{} ±{:.0} %", crosstalk(law.crosstalk), 100.0 * law.error))),
         figure(peak),
     ]
+}
+
+fn crosstalk(share: f64) -> String {
+    if share == 0.0 { "0".to_owned() } else { format!("{share:.1e}") }
 }
 
 fn laws_legend() -> &'static str {

@@ -1,9 +1,26 @@
 use super::*;
-use rayweave_core::Image;
+use rayweave_core::{Image, ThreadsStart};
+use rayweave_measure::compare::{Role, Row};
 use rayweave_measure::forecast::{Curve, Point};
 use rayweave_measure::{Comparison, Interval};
 use rayweave_predict::{Law, Overheads};
 use serde_json::Value;
+
+/// A row that gave another picture.
+fn wrong() -> Row {
+    Row {
+        strategy: "lock",
+        threads: 1,
+        role: Role::Contender,
+        threads_start: ThreadsStart::Render,
+        identical: false,
+        digest: Some(Image::new(1, 1).expect("a picture").digest()),
+        error: None,
+        rays: None,
+        samples: Vec::new(),
+        figures: None,
+    }
+}
 
 fn forecast() -> Forecast {
     let interval = |median| Interval { median, low: median - 0.1, high: median + 0.1 };
@@ -29,7 +46,7 @@ fn forecast() -> Forecast {
         slowdowns: vec![(2, Interval { median: 1.05, low: 1.0, high: 1.1 })],
         reference_ns: (51e6, Some(50e6)),
         comparison: Comparison {
-            rows: Vec::new(),
+            rows: vec![wrong()],
             digest: Image::new(1, 1).expect("a picture").digest(),
             rounds: 6,
             seed: 1,
@@ -53,6 +70,7 @@ fn the_table_predicts_checks_and_says_what_is_assumed() {
     has("queue 2 1.80 2.00 [1.90, 2.10] -10.0 %");
     has("1 of 2 within 5 %");
     has("omp: unavailable here: no compiler");
+    assert!(table.contains("lock, 1 thread: a wrong picture"), "{table}");
     assert!(table.contains("1.050 [1.000, 1.100] times as long"), "{table}");
     assert!(table.contains("50.00 ms, by its pieces 51.00 ms (+2.0 %)"), "{table}");
     assert!(ASSUMPTIONS.iter().all(|assumption| table.contains(assumption)), "{table}");
