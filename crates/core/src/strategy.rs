@@ -108,6 +108,9 @@ pub enum Dealing {
     Guided,
     /// Each thread has a range of its own; whoever is idle takes half of another's.
     Stealing,
+    /// One thread halves the whole range until there are about twice as many parts as threads; a part that an idle
+    /// thread takes from another is halved again as often. Within a part nothing is taken. So rayon's loops do.
+    Halving,
 }
 
 /// How a finished piece comes into the picture.

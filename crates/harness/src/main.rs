@@ -12,7 +12,7 @@ mod picture;
 mod progress;
 
 use clap::{Parser, Subcommand};
-use commands::{check, compare, error, intersect, render, strategies};
+use commands::{check, compare, error, intersect, overhead, predict, render, strategies};
 use std::io::{self, Write};
 use std::process::ExitCode;
 
@@ -37,6 +37,10 @@ enum Command {
     Check(check::Arguments),
     /// Time the strategies side by side and print the table (the default)
     Compare(compare::Arguments),
+    /// Measure what each strategy costs beside its work
+    Overhead(overhead::Arguments),
+    /// Predict what more threads would make of a picture, and check it with those that are here
+    Predict(predict::Arguments),
     /// Hold the speed of every setting against its error
     Error(error::Arguments),
     /// Send hard cases through the kernel that renders, results as JSON lines
@@ -57,6 +61,8 @@ fn main() -> ExitCode {
         Some(Command::Render(arguments)) => render::run(&arguments),
         Some(Command::Check(arguments)) => check::run(&arguments),
         Some(Command::Compare(arguments)) => compare::run(arguments.scene.as_deref(), &arguments.options),
+        Some(Command::Overhead(arguments)) => overhead::run(&arguments),
+        Some(Command::Predict(arguments)) => predict::run(&arguments),
         Some(Command::Error(arguments)) => error::run(&arguments),
         Some(Command::Intersect(arguments)) => intersect::run(&arguments),
         None => compare::run(None, &cli.compare),

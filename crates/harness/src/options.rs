@@ -236,6 +236,18 @@ pub fn parse_threads(text: &str) -> Result<NonZeroUsize, String> {
     threads.and_then(NonZeroUsize::new).ok_or_else(|| format!("expected an integer in 1..={MAX_THREADS}"))
 }
 
+/// A number of threads, or a range of which the ends and the powers of two between them are meant, for clap.
+pub fn parse_thread_counts(text: &str) -> Result<Vec<NonZeroUsize>, String> {
+    let Some((first, last)) = text.split_once("..") else { return Ok(vec![parse_threads(text)?]) };
+    let (first, last) = (parse_threads(first)?, parse_threads(last)?);
+    if first > last {
+        return Err(format!("the range is empty: expected its smaller end first, as in {last}..{first}"));
+    }
+    let powers = (0..usize::BITS).filter_map(|power| NonZeroUsize::new(1_usize << power));
+    let between = powers.filter(|power| (first..last).contains(power));
+    Ok(distinct(&[first].into_iter().chain(between).chain([last]).collect::<Vec<_>>(), |threads| *threads))
+}
+
 /// Each value once, in the order given.
 pub fn distinct<T: Clone, K: PartialEq>(values: &[T], key: impl Fn(&T) -> K) -> Vec<T> {
     let mut distinct: Vec<T> = Vec::new();

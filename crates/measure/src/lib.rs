@@ -3,27 +3,37 @@
 //! * [`check`]: every strategy against the reference, bit for bit, with the pixel, the tile and the
 //!   thread that differ;
 //! * [`compare`]: interleaved rounds in which every timed picture is verified;
+//! * [`overhead`]: what a strategy costs beside its work, on synthetic work;
+//! * [`forecast`]: what more threads would make of a picture, beside what those here make of it;
 //! * [`machine`]: what was measured on, and with what.
 //!
 //! What watches a rendering is a [`Work`](rayweave_core::Work) around a `Work` ([`recorder`]) or
 //! in place of it ([`computing_threads`]): no strategy has a line for any of it.
 
 mod attempt;
+pub mod calibration;
 pub mod check;
 pub mod compare;
 pub mod computing_threads;
 pub mod finding;
+pub mod forecast;
+pub mod independent;
 pub mod machine;
+pub mod overhead;
+pub mod piece_costs;
 mod poison;
 pub mod random;
 pub mod recorder;
 pub mod schedule;
+mod sheet;
 pub mod statistics;
 pub mod stopwatch;
+pub mod synthetic;
 
 pub use check::{Case, Check, Verdict};
 pub use compare::{Comparison, Entry, Row};
 pub use finding::{Fault, Finding};
+pub use forecast::Forecast;
 pub use machine::Machine;
 pub use schedule::Protocol;
 pub use statistics::Interval;

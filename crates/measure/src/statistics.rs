@@ -30,6 +30,15 @@ pub fn median(sample: &[f64]) -> Option<f64> {
     median_in_place(&mut sample.to_vec())
 }
 
+/// The lower quartile of `sample`, of up to four values the smallest; `None` when there is no sample. For times of which
+/// the machine's own share is wanted: what disturbs only adds to them.
+#[must_use]
+pub fn lower_quartile(sample: &[f64]) -> Option<f64> {
+    let mut sorted = sample.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    sorted.get(sample.len().saturating_sub(1) / 4).copied()
+}
+
 /// The median of `sample` with its 95 % interval, which the sign test gives: from the `k`-th value
 /// to the `k`-th last, for the largest `k` with a coverage of 95 % or more. `None` when there is no
 /// sample.
@@ -107,6 +116,14 @@ mod tests {
         assert_eq!(median(&[3.0, 1.0, 2.0]), Some(2.0));
         assert_eq!(median(&[4.0, 1.0, 3.0, 2.0]), Some(2.5));
         assert_eq!(median(&[]), None);
+    }
+
+    #[test]
+    fn a_quarter_is_below_the_lower_quartile() {
+        assert_eq!(lower_quartile(&[]), None);
+        assert_eq!(lower_quartile(&[7.0, 3.0, 5.0, 9.0]), Some(3.0));
+        assert_eq!(lower_quartile(&[5.0, 4.0, 3.0, 2.0, 1.0]), Some(2.0));
+        assert_eq!(lower_quartile(&(1..=25).rev().map(f64::from).collect::<Vec<_>>()), Some(7.0));
     }
 
     /// The coverage of the interval that leaves out `outside` of `n` values at each end, in integers.

@@ -6,6 +6,8 @@ mod table;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use table::complaint;
+
 use rayweave_core::{Formulas, Sampling, Search, ThreadsStart};
 use rayweave_measure::{Comparison, Interval, Machine, Row};
 

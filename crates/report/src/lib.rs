@@ -3,13 +3,17 @@
 //! * [`compare::Report`]: the table of a comparison, and the same for other programs;
 //! * [`check`]: what a check found;
 //! * [`accuracy`]: how right a kernel's answers to hard cases are;
-//! * [`tradeoff::Report`]: speed against error, as a table, a plot, and for other programs.
+//! * [`tradeoff::Report`]: speed against error, as a table, a plot, and for other programs;
+//! * [`overhead::Report`]: what strategies cost beside their work;
+//! * [`forecast::Report`]: what more threads would do, as tables, a plot, and for other programs.
 
 pub mod accuracy;
 pub mod check;
 pub mod compare;
 mod csv;
+pub mod forecast;
 mod json;
 pub mod machine;
+pub mod overhead;
 mod style;
 pub mod tradeoff;

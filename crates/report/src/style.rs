@@ -7,15 +7,16 @@ use std::ops::RangeInclusive;
 const STYLE: TableStyle = TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'));
 
 /// A table without a newline at the end; the columns `numbers` line up at their right.
-pub(crate) fn table<const N: usize>(
-    header: [&str; N],
-    rows: impl Iterator<Item = [String; N]>,
+pub(crate) fn table<H: ToString, R: IntoIterator<Item = String>>(
+    header: impl IntoIterator<Item = H>,
+    rows: impl Iterator<Item = R>,
     numbers: RangeInclusive<usize>,
 ) -> String {
     let mut table = Table::new();
     // Neither colours nor a wrapping that depends on the window: a result reads the same everywhere.
     table.force_no_tty().load_style(STYLE).set_content_arrangement(ContentArrangement::Disabled);
-    table.set_header(header).add_rows(rows);
+    table.set_header(header.into_iter().map(|name| name.to_string()));
+    table.add_rows(rows.map(|row| row.into_iter().collect::<Vec<_>>()));
     for (index, column) in table.column_iter_mut().enumerate() {
         column.set_padding((0, 1));
         if numbers.contains(&index) {
@@ -28,4 +29,15 @@ pub(crate) fn table<const N: usize>(
 /// As in `1.84 [1.79, 1.90]`.
 pub(crate) fn interval(Interval { median, low, high }: Interval) -> String {
     format!("{median:.2} [{low:.2}, {high:.2}]")
+}
+
+/// A number with three digits, or with all before its point if these are more.
+pub(crate) fn significant(value: f64) -> String {
+    let decimals = match value.abs() {
+        100.0.. => 0,
+        10.0.. => 1,
+        1.0.. => 2,
+        _ => 3,
+    };
+    format!("{value:.decimals$}")
 }

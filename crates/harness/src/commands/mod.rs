@@ -4,5 +4,7 @@ pub mod check;
 pub mod compare;
 pub mod error;
 pub mod intersect;
+pub mod overhead;
+pub mod predict;
 pub mod render;
 pub mod strategies;

@@ -150,7 +150,7 @@ pub(super) fn computed(subject: &Subject) -> String {
 }
 
 /// What is wrong with a row, if anything.
-fn complaint(row: &Row) -> Option<String> {
+pub(crate) fn complaint(row: &Row) -> Option<String> {
     let plural = if row.threads == 1 { "" } else { "s" };
     let who = format!("{}, {} thread{plural}", row.strategy, row.threads);
     match (&row.error, row.digest) {

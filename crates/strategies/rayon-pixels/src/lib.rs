@@ -36,7 +36,7 @@ impl Strategy for RayonPixels {
     }
 
     fn rule(&self) -> Rule {
-        Rule { piece: Piece::Pixel, dealing: Dealing::Stealing, delivery: Delivery::InPlace }
+        Rule { piece: Piece::Pixel, dealing: Dealing::Halving, delivery: Delivery::InPlace }
     }
 
     fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {

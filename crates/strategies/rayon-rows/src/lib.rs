@@ -41,7 +41,7 @@ impl Strategy for RayonRows {
     }
 
     fn rule(&self) -> Rule {
-        Rule { piece: Piece::Row, dealing: Dealing::Stealing, delivery: Delivery::InPlace }
+        Rule { piece: Piece::Row, dealing: Dealing::Halving, delivery: Delivery::InPlace }
     }
 
     fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {

@@ -39,7 +39,7 @@ impl Strategy for RayonTiles {
     }
 
     fn rule(&self) -> Rule {
-        Rule { piece: Piece::Tile, dealing: Dealing::Stealing, delivery: Delivery::InPlace }
+        Rule { piece: Piece::Tile, dealing: Dealing::Halving, delivery: Delivery::InPlace }
     }
 
     fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {

@@ -1,0 +1,57 @@
+//! `rayweave overhead`: what strategies cost beside their work.
+
+use crate::options::{all_threads, distinct, parse_strategy, parse_threads};
+use crate::output::PendingFile;
+use crate::{Outcome, print, progress};
+use clap::Args;
+use rayweave_core::Strategy;
+use rayweave_measure::overhead::Overhead;
+use rayweave_measure::{Machine, Protocol};
+use rayweave_registry::STRATEGIES;
+use rayweave_report::overhead::Report;
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+use std::time::Duration;
+
+#[derive(Args)]
+pub struct Arguments {
+    /// Strategies to measure [default: all]
+    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = parse_strategy)]
+    strategy: Vec<&'static dyn Strategy>,
+    /// Number of computing threads [default: what the machine and its quota allow]
+    #[arg(long, value_name = "N", value_parser = parse_threads)]
+    threads: Option<NonZeroUsize>,
+    /// Write the result as JSON
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+/// Six rounds, for a 95 % interval, and no more of them than fit into 20 seconds.
+const PROTOCOL: Protocol =
+    Protocol { min_rounds: 6, max_rounds: 20, budget: Duration::from_secs(20), seed: 1 };
+
+/// Steps of the progress bar.
+const STEPS: f64 = 1000.0;
+
+pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
+    let json = arguments.json.as_deref().map(PendingFile::create).transpose()?;
+    let strategies =
+        distinct(if arguments.strategy.is_empty() { STRATEGIES } else { &arguments.strategy }, |s| s.name());
+    let overhead = Overhead {
+        reference: rayweave_registry::reference(),
+        strategies: &strategies,
+        threads: arguments.threads.unwrap_or_else(all_threads),
+        protocol: PROTOCOL,
+    };
+    let bar = progress::bar(STEPS as u64);
+    let study = overhead.run(|strategy, fraction| {
+        bar.set_message(strategy.to_owned());
+        bar.set_position((fraction * STEPS) as u64);
+    });
+    bar.finish_and_clear();
+    let (study, machine) = (study.map_err(|e| e.to_string())?, Machine::here());
+    let report = Report { study: &study, machine: &machine };
+    print(&format!("{}\n", report.table()))?;
+    json.map_or(Ok(()), |file| file.finish(report.json().as_bytes()))?;
+    Ok(if study.holds() { Outcome::Held } else { Outcome::Failed })
+}

@@ -1,0 +1,90 @@
+//! `rayweave predict`: what more threads would make of a picture.
+
+use crate::input::Input;
+use crate::options::{SceneOptions, TileOption, all_threads, distinct, parse_strategy, parse_thread_counts};
+use crate::output::{PendingFile, distinct_files};
+use crate::{Outcome, print, progress};
+use clap::Args;
+use rayweave_core::Strategy;
+use rayweave_measure::forecast::{Question, Stage};
+use rayweave_measure::{Machine, Protocol};
+use rayweave_registry::STRATEGIES;
+use rayweave_report::forecast::Report;
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+#[derive(Args)]
+pub struct Arguments {
+    /// Scene file [default: the report's scene, built in]
+    scene: Option<PathBuf>,
+    /// Strategies to predict [default: all that start threads]
+    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = parse_strategy)]
+    strategy: Vec<&'static dyn Strategy>,
+    /// Numbers of computing threads, each 1..=1024: a list, in which A..B stands for A, B and the powers of two between
+    #[arg(long, value_name = "N,A..B", value_delimiter = ',', value_parser = parse_thread_counts, default_value = "1..64")]
+    threads: Vec<Counts>,
+    #[command(flatten)]
+    tile: TileOption,
+    /// Write the result as JSON
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// Write a plot
+    #[arg(long, value_name = "FILE")]
+    svg: Option<PathBuf>,
+    #[command(flatten)]
+    options: SceneOptions,
+}
+
+/// What one value of the list stands for.
+type Counts = Vec<NonZeroUsize>;
+
+/// Steps of the progress bar.
+const STEPS: f64 = 1000.0;
+
+pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
+    distinct_files(&[&arguments.scene, &arguments.json, &arguments.svg])?;
+    let json = arguments.json.as_deref().map(PendingFile::create).transpose()?;
+    let svg = arguments.svg.as_deref().map(PendingFile::create).transpose()?;
+    let input = Input::load(arguments.scene.as_deref(), &arguments.options)?;
+    let tile = arguments.tile.of(input.width, input.height)?;
+    let strategies =
+        distinct(if arguments.strategy.is_empty() { STRATEGIES } else { &arguments.strategy }, |s| s.name());
+    let mut threads = arguments.threads.concat();
+    threads.sort_unstable();
+    threads.dedup();
+    let work = input.work(input.width, input.height)?;
+    let question = Question {
+        work: &*work,
+        size: (input.width, input.height),
+        tile,
+        reference: rayweave_registry::reference(),
+        strategies: &strategies,
+        threads: &threads,
+        available: all_threads(),
+        protocol: Protocol::default(),
+    };
+    let bar = progress::bar(STEPS as u64);
+    let forecast = question.answer(|stage, fraction| {
+        bar.set_message(match stage {
+            Stage::Pieces => "pieces, one by one",
+            Stage::Overheads => "overheads of threads",
+            Stage::Renderings => "renderings",
+        });
+        bar.set_position((fraction * STEPS) as u64);
+    });
+    bar.finish_and_clear();
+    let forecast = forecast.map_err(|e| format!("{}: {e}", input.name))?;
+    let machine = Machine::here();
+    let report = Report {
+        scene: &input.name,
+        width: input.width,
+        height: input.height,
+        tile: tile.get(),
+        forecast: &forecast,
+        machine: &machine,
+    };
+    print(&format!("{}\n{}\n", report.table(), input.arithmetic_line()))?;
+    json.map_or(Ok(()), |file| file.finish(report.json().as_bytes()))?;
+    svg.map_or(Ok(()), |file| file.finish(report.svg()?.as_bytes()))?;
+    Ok(if forecast.comparison.holds() { Outcome::Held } else { Outcome::Failed })
+}

@@ -1,0 +1,206 @@
+//! What a strategy's threads cost it here, as a simulation needs it: from outside, on synthetic work.
+
+use crate::overhead::{of_pixels, step};
+use crate::sheet::{Columns, Sheet};
+use crate::statistics::lower_quartile;
+use crate::synthetic::Synthetic;
+use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule};
+use rayweave_core::{Renderer, Strategy};
+use rayweave_predict::{Access, Overheads};
+use std::num::NonZeroUsize;
+
+/// Times that everything is rendered; the lower quartile counts.
+const REPETITIONS: usize = 25;
+
+/// A piece long enough for every thread to get one, in nanoseconds.
+const LONG_PIECE: f64 = 200e3;
+
+/// Pieces of the rendering of which half must be stolen, and nanoseconds of each.
+const STOLEN: (u32, f64) = (64, 10e3);
+
+/// Measures the overheads of `strategies`, taking turns, on one and on `threads` threads.
+///
+/// # Errors
+///
+/// The reference, which steps are timed with, or one of the strategies fails: what it says.
+pub fn calibrate(
+    reference: &dyn Strategy,
+    strategies: &[&dyn Strategy],
+    threads: NonZeroUsize,
+    mut progress: impl FnMut(f64),
+) -> Result<Vec<Overheads>, String> {
+    let mut sheets = Sheets::new(step(reference)?, threads)?;
+    let mut rounds = vec![Vec::new(); strategies.len()];
+    for repetition in 0..REPETITIONS {
+        progress(repetition as f64 / REPETITIONS as f64);
+        for (&strategy, rounds) in strategies.iter().zip(&mut rounds) {
+            let mut one = of_pixels(strategy, NonZeroUsize::MIN)?;
+            let mut all = of_pixels(strategy, threads)?;
+            rounds.push(sheets.time(&mut *one, &mut *all)?);
+        }
+    }
+    let of = |(strategy, rounds): (&&dyn Strategy, &Vec<Times>)| {
+        overheads(strategy.rule(), threads.get(), &Times::least_disturbed(rounds))
+    };
+    Ok(strategies.iter().zip(&rounds).map(of).collect())
+}
+
+/// What is rendered.
+struct Sheets {
+    columns: Columns,
+    single: Sheet,
+    /// A long piece.
+    alone: Sheet,
+    /// One for each thread.
+    together: Sheet,
+    /// A load that is spread evenly.
+    spread: Sheet,
+    /// The same load in the latter half of the pieces.
+    late: Sheet,
+}
+
+impl Sheets {
+    fn new(step_ns: f64, threads: NonZeroUsize) -> Result<Self, String> {
+        let steps = |ns: f64| (ns / step_ns).round() as u32;
+        let threads = u32::try_from(threads.get()).unwrap_or(u32::MAX);
+        let (long, (pieces, ns)) = (steps(LONG_PIECE), STOLEN);
+        let late = steps(ns);
+        Ok(Self {
+            columns: Columns::new()?,
+            single: Sheet::column(1, 0)?,
+            alone: Sheet::column(1, long)?,
+            together: Sheet::column(threads, long)?,
+            spread: Sheet::column(pieces, steps(ns / 2.0))?,
+            late: Sheet::new(Synthetic(move |_, y| if y < pieces / 2 { 0 } else { late }), 1, pieces)?,
+        })
+    }
+
+    fn time(&mut self, one: &mut dyn Renderer, all: &mut dyn Renderer) -> Result<Times, String> {
+        Ok(Times {
+            single: self.single.time(one)?,
+            columns_one: self.columns.time(one)?,
+            columns_all: self.columns.time(all)?,
+            alone: self.alone.time(one)?,
+            together: self.together.time(all)?,
+            spread: self.spread.time(all)?,
+            late: self.late.time(all)?,
+        })
+    }
+}
+
+/// In nanoseconds, of what [`Sheets`] has; of columns the short and the long one's.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Times {
+    single: f64,
+    columns_one: [f64; 2],
+    columns_all: [f64; 2],
+    alone: f64,
+    together: f64,
+    spread: f64,
+    late: f64,
+}
+
+impl Times {
+    /// Each by itself, before anything is subtracted.
+    fn least_disturbed(rounds: &[Self]) -> Self {
+        let of =
+            |of: fn(&Self) -> f64| lower_quartile(&rounds.iter().map(of).collect::<Vec<_>>()).unwrap_or(0.0);
+        Self {
+            single: of(|times| times.single),
+            columns_one: [of(|times| times.columns_one[0]), of(|times| times.columns_one[1])],
+            columns_all: [of(|times| times.columns_all[0]), of(|times| times.columns_all[1])],
+            alone: of(|times| times.alone),
+            together: of(|times| times.together),
+            spread: of(|times| times.spread),
+            late: of(|times| times.late),
+        }
+    }
+}
+
+/// From outside nothing tells what of a piece's dispatch one thread at a time does. Where all threads share something,
+/// that much of it is taken for it as did not become faster by more threads, and what became slower is the handover.
+fn overheads(rule: Rule, threads: usize, times: &Times) -> Overheads {
+    // What comes out below 0 is noise.
+    let dispatch = |columns| Columns::slope(columns).max(0.0);
+    let (one, all) = match rule.piece {
+        Piece::Band => (0.0, 0.0),
+        _ => (dispatch(times.columns_one), dispatch(times.columns_all)),
+    };
+    let others = threads.saturating_sub(1).max(1) as f64;
+    let steals = threads > 1 && matches!(rule.dealing, Dealing::Stealing | Dealing::Halving);
+    let overheads = Overheads {
+        start: times.single,
+        // Whoever begins later ends later.
+        next_start: (times.together - times.alone).max(0.0) / others,
+        piece: one,
+        steal: if steals { (times.late - times.spread).max(0.0) } else { 0.0 },
+        ..Overheads::default()
+    };
+    let access =
+        |pieces: f64| Access { hold: one.min(all) * pieces, handover: (all - one).max(0.0) * pieces };
+    let piece = (one - all).max(0.0);
+    match (rule.delivery, rule.dealing) {
+        (Delivery::Locked | Delivery::Sent, _) => Overheads { deliver: access(1.0), piece, ..overheads },
+        (Delivery::InPlace, Dealing::Shared { chunk }) => {
+            Overheads { take: access(chunk as f64), piece, ..overheads }
+        }
+        (Delivery::InPlace, _) => overheads,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The columns differ by 2^14 - 2^8 pieces.
+    const PIECES: f64 = 16_128.0;
+
+    fn times(all: f64) -> Times {
+        Times {
+            single: 7.0,
+            columns_one: [5.0, 5.0 + 10.0 * PIECES],
+            columns_all: [5.0, 5.0 + all * PIECES],
+            alone: 200.0,
+            together: 206.0,
+            spread: 300.0,
+            late: 303.0,
+        }
+    }
+
+    fn of(dealing: Dealing, delivery: Delivery, all: f64) -> Overheads {
+        overheads(Rule { piece: Piece::Row, dealing, delivery }, 3, &times(all))
+    }
+
+    /// Catches a dispatch that is counted twice, or in the wrong place.
+    #[test]
+    fn what_is_shared_takes_what_threads_do_not_speed_up() {
+        let plain = Overheads { start: 7.0, next_start: 3.0, piece: 10.0, ..Overheads::default() };
+        assert_eq!(of(Dealing::Equal, Delivery::InPlace, 14.0), plain);
+        assert_eq!(of(Dealing::Stealing, Delivery::InPlace, 6.0), Overheads { steal: 3.0, ..plain });
+        let take = Access { hold: 20.0, handover: 8.0 };
+        let shared = Dealing::Shared { chunk: 2 };
+        assert_eq!(of(shared, Delivery::InPlace, 14.0), Overheads { piece: 0.0, take, ..plain });
+        let deliver = Access { hold: 6.0, handover: 0.0 };
+        assert_eq!(of(shared, Delivery::Locked, 6.0), Overheads { piece: 4.0, deliver, ..plain });
+        assert_eq!(of(Dealing::Equal, Delivery::Sent, 6.0), Overheads { piece: 4.0, deliver, ..plain });
+    }
+
+    /// Catches a price of stealing, or of another thread's start, where there is no other thread, and one of pieces where
+    /// there is one a thread.
+    #[test]
+    fn bands_have_no_dispatch_and_one_thread_nobody_to_steal_from() {
+        let rule = |piece| Rule { piece, dealing: Dealing::Halving, delivery: Delivery::InPlace };
+        let faster = Times { together: 150.0, ..times(10.0) };
+        let expected = Overheads { start: 7.0, piece: 10.0, ..Overheads::default() };
+        assert_eq!(overheads(rule(Piece::Pixel), 1, &faster), expected);
+        assert_eq!(overheads(rule(Piece::Band), 1, &faster), Overheads { piece: 0.0, ..expected });
+    }
+
+    #[test]
+    fn the_least_disturbed_of_each() {
+        let rounds =
+            [1.0, 2.0, 3.0, 4.0, 5.0].map(|single| Times { single, late: 9.0 - single, ..times(10.0) });
+        let least = Times { single: 2.0, late: 5.0, ..times(10.0) };
+        assert_eq!(Times::least_disturbed(&rounds), least);
+    }
+}

@@ -1,0 +1,238 @@
+//! What more threads would make of a picture, from measured costs, and beside it what the threads here make of it.
+//!
+//! * Every strategy is timed on the numbers of threads that this machine has, by the [protocol](crate::compare) of a
+//!   comparison.
+//! * In the same rounds [independent](crate::independent) threads draw the whole picture each: so much slower is every
+//!   piece taken to be beside other threads.
+//! * The costs of [pieces](crate::piece_costs) and of [threads](crate::calibration) are measured apart.
+//! * From these alone the [simulation](rayweave_predict) predicts all speed-ups. Nothing of it is fitted to the times
+//!   of the strategies.
+
+use crate::calibration::calibrate;
+use crate::compare::{CompareError, Comparison, Entry, Row};
+use crate::independent::Independent;
+use crate::overhead::of_pixels;
+use crate::piece_costs::PieceCosts;
+use crate::schedule::Protocol;
+use crate::statistics::Interval;
+use crate::stopwatch::Stopwatch;
+use rayweave_core::image::ImageError;
+use rayweave_core::strategy::Piece;
+use rayweave_core::{Strategy, ThreadsStart, Work};
+use rayweave_predict::fit::{amdahl, usl};
+use rayweave_predict::{Law, Overheads, simulate};
+use std::num::{NonZeroU32, NonZeroUsize};
+use thiserror::Error;
+
+/// What is predicted.
+#[derive(Clone, Copy)]
+pub struct Question<'a> {
+    /// What is rendered.
+    pub work: &'a dyn Work,
+    /// Of the picture, in pixels.
+    pub size: (u32, u32),
+    /// The side of a tile, in pixels.
+    pub tile: NonZeroU32,
+    /// What speed-ups are against.
+    pub reference: &'a dyn Strategy,
+    /// Those that start no threads are left out.
+    pub strategies: &'a [&'a dyn Strategy],
+    /// Numbers of threads, the smallest first.
+    pub threads: &'a [NonZeroUsize],
+    /// Threads that can be measured here.
+    pub available: NonZeroUsize,
+    /// Of what is measured.
+    pub protocol: Protocol,
+}
+
+/// The answer.
+#[derive(Clone, Debug)]
+pub struct Forecast {
+    /// One a strategy.
+    pub curves: Vec<Curve>,
+    /// Why strategies are missing.
+    pub unavailable: Vec<String>,
+    /// How many times as long as alone a thread takes beside others that share nothing with it, by the number of all.
+    pub slowdowns: Vec<(usize, Interval)>,
+    /// Of the reference, in nanoseconds: as predicted, and the median of those measured.
+    pub reference_ns: (f64, Option<f64>),
+    /// What was measured.
+    pub comparison: Comparison,
+}
+
+/// A strategy on ever more threads.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    /// Its name.
+    pub strategy: &'static str,
+    /// As measured here.
+    pub overheads: Overheads,
+    /// In the order of the numbers of threads asked for.
+    pub points: Vec<Point>,
+    /// Of what the strategy makes of its own single thread, all points together; `None` of too few.
+    pub amdahl: Option<Law>,
+    /// As `amdahl`.
+    pub usl: Option<Law>,
+}
+
+/// A strategy on a number of threads.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// The number of computing threads.
+    pub threads: usize,
+    /// As predicted, against the reference.
+    pub predicted: f64,
+    /// As measured; `None` for more threads than here, and where pictures were wrong.
+    pub measured: Option<Interval>,
+}
+
+impl Point {
+    /// By what share the prediction is above what was measured.
+    #[must_use]
+    pub fn difference(&self) -> Option<f64> {
+        self.measured.map(|measured| self.predicted / measured.median - 1.0)
+    }
+}
+
+/// What is being done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// Pieces are timed alone.
+    Pieces,
+    /// Threads, locks and counters are timed.
+    Overheads,
+    /// Strategies are timed.
+    Renderings,
+}
+
+/// Why there is no forecast.
+#[derive(Debug, Error)]
+pub enum ForecastError {
+    /// There is nothing to compare with.
+    #[error(transparent)]
+    Compare(#[from] CompareError),
+    /// There is no such picture.
+    #[error(transparent)]
+    Image(#[from] ImageError),
+    /// What a strategy says.
+    #[error("{0}")]
+    Strategy(String),
+}
+
+impl Question<'_> {
+    /// Measures and predicts; `progress` is told the share of a stage that is done, between timed spans.
+    ///
+    /// # Errors
+    ///
+    /// No picture of this size, or a strategy that fails though it could be prepared.
+    pub fn answer(&self, mut progress: impl FnMut(Stage, f64)) -> Result<Forecast, ForecastError> {
+        let mut unavailable = Vec::new();
+        let mut strategies = vec![self.reference];
+        for &strategy in self.strategies.iter().filter(|s| s.threads_start() != ThreadsStart::Never) {
+            match of_pixels(strategy, NonZeroUsize::MIN) {
+                Ok(_) => strategies.push(strategy),
+                Err(reason) => unavailable.push(reason),
+            }
+        }
+        let kinds: Vec<Piece> = strategies.iter().map(|strategy| strategy.rule().piece).collect();
+        let costs = PieceCosts::measure(self.work, self.size, self.tile, &kinds, |done| {
+            progress(Stage::Pieces, done);
+        })?;
+        let overheads =
+            calibrate(self.reference, &strategies, self.available, |done| progress(Stage::Overheads, done))
+                .map_err(ForecastError::Strategy)?;
+        let comparison = self.compare(&strategies[1..], |done| progress(Stage::Renderings, done))?;
+
+        let slowdowns = slowdowns(&comparison);
+        let time = |index: usize, threads: usize| {
+            let rule = strategies[index].rule();
+            let slowdown = slowdown(&slowdowns, threads);
+            let pieces = costs.of(rule.piece, threads).into_iter().map(|cost| cost * slowdown);
+            simulate(rule, threads, &pieces.collect::<Vec<_>>(), &overheads[index]).time
+        };
+        let reference = time(0, 1);
+        let curve = |index: usize| {
+            let times: Vec<(usize, f64)> =
+                self.threads.iter().map(|threads| (threads.get(), time(index, threads.get()))).collect();
+            let one = time(index, 1);
+            let own: Vec<(usize, f64)> = times.iter().map(|&(threads, time)| (threads, one / time)).collect();
+            let name = strategies[index].name();
+            let points = times.iter().map(|&(threads, time)| {
+                let row = find(&comparison, name, threads);
+                let measured = row.and_then(|row| row.figures).map(|figures| figures.speedup);
+                Point { threads, predicted: reference / time, measured }
+            });
+            let (amdahl, usl) = (amdahl(&own), usl(&own));
+            Curve { strategy: name, overheads: overheads[index], points: points.collect(), amdahl, usl }
+        };
+        let curves = (1..strategies.len()).map(curve).collect();
+        let measured = comparison.rows.first().and_then(|row| row.figures).map(|figures| figures.median_ns);
+        Ok(Forecast { curves, unavailable, slowdowns, reference_ns: (reference, measured), comparison })
+    }
+
+    /// Times the strategies, and independent threads, on the threads that are here.
+    fn compare(
+        &self,
+        strategies: &[&dyn Strategy],
+        mut progress: impl FnMut(f64),
+    ) -> Result<Comparison, ForecastError> {
+        let here: Vec<NonZeroUsize> =
+            self.threads.iter().copied().filter(|threads| *threads <= self.available).collect();
+        let independent = Independent::default();
+        let mut entries: Vec<Entry<'_>> = strategies
+            .iter()
+            .flat_map(|&strategy| here.iter().map(move |&threads| Entry { strategy, threads }))
+            .collect();
+        let together = here.iter().filter(|threads| **threads != self.available).chain([&self.available]);
+        let several = together.filter(|threads| threads.get() > 1);
+        entries.extend(several.map(|&threads| Entry { strategy: &independent, threads }));
+        let (width, height) = self.size;
+        let mut stopwatch = Stopwatch::new(self.work, width, height, self.tile)?;
+        Ok(self.protocol.run(self.reference, &entries, &mut stopwatch, |at| progress(at.fraction))?)
+    }
+}
+
+fn find<'a>(comparison: &'a Comparison, strategy: &str, threads: usize) -> Option<&'a Row> {
+    comparison.rows.iter().find(|row| (row.strategy, row.threads) == (strategy, threads))
+}
+
+/// From the rows of independent threads: the ends of an interval change places.
+fn slowdowns(comparison: &Comparison) -> Vec<(usize, Interval)> {
+    let name = Independent::default().name();
+    let rows = comparison.rows.iter().filter(|row| row.strategy == name);
+    rows.filter_map(|row| {
+        let Interval { median, low, high } = row.figures?.speedup;
+        Some((row.threads, Interval { median: 1.0 / median, low: 1.0 / high, high: 1.0 / low }))
+    })
+    .collect()
+}
+
+/// For so many threads: that of the largest number measured that is not larger, and so of all threads here for any more.
+fn slowdown(slowdowns: &[(usize, Interval)], threads: usize) -> f64 {
+    let known = slowdowns.iter().rfind(|(measured, _)| *measured <= threads);
+    known.map_or(1.0, |(_, slowdown)| slowdown.median)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_slowdown_of_the_most_threads_measured_is_that_of_all_more() {
+        let at = |median| Interval { median, low: median, high: median };
+        let slowdowns = [(2, at(1.25)), (4, at(1.5))];
+        let expected = [(1, 1.0), (2, 1.25), (3, 1.25), (4, 1.5), (1024, 1.5)];
+        for (threads, factor) in expected {
+            assert_eq!(slowdown(&slowdowns, threads), factor, "{threads} threads");
+        }
+        assert_eq!(slowdown(&[], 8), 1.0);
+    }
+
+    #[test]
+    fn a_difference_is_relative_to_what_was_measured() {
+        let measured = Some(Interval { median: 1.6, low: 1.5, high: 1.7 });
+        let point = Point { threads: 2, predicted: 2.0, measured };
+        assert_eq!(point.difference(), Some(0.25));
+        assert_eq!(Point { measured: None, ..point }.difference(), None);
+    }
+}

@@ -1,0 +1,312 @@
+//! What a strategy costs beside its work, on synthetic work: a piece's dispatch, the smallest task that is worth
+//! it, the smallest picture, and the first use.
+//!
+//! All strategies are measured in interleaved rounds, as [`schedule`](crate::schedule) has it, and every picture is
+//! verified.
+
+mod curve;
+
+use crate::attempt::attempt;
+use crate::schedule::Protocol;
+use crate::sheet::{Columns, Sheet};
+use crate::statistics::{Interval, median, median_interval};
+use crate::synthetic;
+use curve::{break_even, metg};
+use rayweave_core::strategy::Piece;
+use rayweave_core::{Plan, Renderer, Strategy, ThreadsStart};
+use std::num::{NonZeroU32, NonZeroUsize};
+use std::time::Instant;
+use thiserror::Error;
+
+/// Pixels of the column that tasks are made of: one each, but for a strategy that deals in bands.
+pub const TASKS: u32 = 1024;
+
+/// The cost of a pixel in the pictures of the break-even, in nanoseconds.
+pub const PIXEL_NS: f64 = 100.0;
+
+/// The largest side that is tried for the break-even.
+pub const LARGEST_SIDE: u32 = 512;
+
+/// The side of a tile in these pictures.
+pub const TILE: NonZeroU32 = NonZeroU32::new(32).expect("32 is not 0");
+
+/// The least efficiency of the smallest task, as a share of the largest efficiency.
+const LEAST_EFFICIENCY: f64 = 0.5;
+
+/// A task has from one step to as many as 2 to this power.
+const LARGEST_TASK: u32 = 14;
+
+/// The side of the picture of the first use, in pixels.
+const FIRST_SIDE: u32 = 64;
+
+/// What is measured.
+#[derive(Clone, Copy)]
+pub struct Overhead<'a> {
+    /// What break-even is against, and steps are timed with.
+    pub reference: &'a dyn Strategy,
+    /// The reference may be among them.
+    pub strategies: &'a [&'a dyn Strategy],
+    /// The number of computing threads.
+    pub threads: NonZeroUsize,
+    /// How long.
+    pub protocol: Protocol,
+}
+
+/// Rows in the order of the strategies.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Study {
+    /// One a strategy.
+    pub rows: Vec<Row>,
+    /// Of the synthetic work, in nanoseconds.
+    pub step_ns: f64,
+    /// Rounds measured.
+    pub rounds: usize,
+}
+
+/// A strategy, measured.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// Its name.
+    pub strategy: &'static str,
+    /// What it computes at once.
+    pub piece: Piece,
+    /// The number of computing threads.
+    pub threads: usize,
+    /// Or why there are none.
+    pub figures: Result<Figures, Failure>,
+}
+
+/// What a strategy costs; times in nanoseconds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Figures {
+    /// For each piece, on one thread; `None` for bands, of which there are as many as threads.
+    pub dispatch_one: Option<Interval>,
+    /// For each piece, on all threads, as the clock on the wall has it.
+    pub dispatch_all: Option<Interval>,
+    /// The smallest task of which half of the largest efficiency is left, after Slaughter et al., "Task Bench", 2020:
+    /// how long its work takes. `None` if the smallest that was tried, of one step, is not too small.
+    pub metg: Option<f64>,
+    /// The side of the smallest square picture from which on it is faster than the reference, in pixels; `None` if it
+    /// never is, up to [`LARGEST_SIDE`].
+    pub break_even: Option<f64>,
+    /// To prepare it.
+    pub prepare: Interval,
+    /// The first rendering after that, of a small picture.
+    pub first: Interval,
+    /// The same again.
+    pub later: Interval,
+}
+
+/// Why a strategy has no figures.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum Failure {
+    /// It could not be prepared: it is not available here, or could not start its threads.
+    #[error("{0}")]
+    Preparing(String),
+    /// It failed, or drew a wrong picture.
+    #[error("{0}")]
+    Rendering(String),
+}
+
+/// Why nothing could be measured.
+#[derive(Debug, Error)]
+pub enum OverheadError {
+    /// There is nothing to time steps with.
+    #[error("the reference failed: {0}")]
+    Reference(String),
+}
+
+impl Study {
+    /// Whether every picture of synthetic work was right. A strategy that is not available draws none.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        self.rows.iter().all(|row| !matches!(row.figures, Err(Failure::Rendering(_))))
+    }
+}
+
+impl Overhead<'_> {
+    /// Measures all strategies; `progress` is told the share that is done, between timed spans.
+    ///
+    /// # Errors
+    ///
+    /// The reference fails. Of any other strategy the row says why.
+    pub fn run(&self, mut progress: impl FnMut(&str, f64)) -> Result<Study, OverheadError> {
+        let begin = Instant::now();
+        let mut sheets = Sheets::new(self.reference).map_err(OverheadError::Reference)?;
+        let strategies: Vec<&dyn Strategy> =
+            std::iter::once(self.reference).chain(self.strategies.iter().copied()).collect();
+        let mut samples: Vec<Result<Samples, Failure>> = vec![Ok(Samples::default()); strategies.len()];
+        let mut schedule = self.protocol.schedule(strategies.len());
+        while let Some(turn) = schedule.next(begin.elapsed()) {
+            let strategy = strategies[turn.entry];
+            progress(strategy.name(), turn.fraction);
+            let so_far = &mut samples[turn.entry];
+            let measured = if so_far.is_ok() { self.turn(strategy, &mut sheets) } else { continue };
+            match (so_far.as_mut(), measured) {
+                // The warm-up is no sample.
+                (Ok(samples), Ok(round)) if turn.round.is_some() => samples.rounds.push(round),
+                (_, Err(error)) => *so_far = Err(error),
+                _ => {}
+            }
+        }
+        let mut samples = samples.into_iter();
+        let reference = samples.next().unwrap_or_else(|| Ok(Samples::default()));
+        let reference = reference.map_err(|failure| OverheadError::Reference(failure.to_string()))?;
+        let rows = samples.zip(self.strategies).map(|(samples, &strategy)| Row {
+            strategy: strategy.name(),
+            piece: strategy.rule().piece,
+            threads: self.threads_of(strategy).get(),
+            figures: samples.map(|samples| self.figures(strategy, &samples, &reference, sheets.step_ns)),
+        });
+        Ok(Study { rows: rows.collect(), step_ns: sheets.step_ns, rounds: schedule.rounds() })
+    }
+
+    fn threads_of(&self, strategy: &dyn Strategy) -> NonZeroUsize {
+        if strategy.threads_start() == ThreadsStart::Never { NonZeroUsize::MIN } else { self.threads }
+    }
+
+    /// Everything once, for one strategy.
+    fn turn(&self, strategy: &dyn Strategy, sheets: &mut Sheets) -> Result<Round, Failure> {
+        let threads = self.threads_of(strategy);
+        let failed = |error| Failure::Rendering(format!("{}: {error}", strategy.name()));
+        let times = |sheets: &mut [Sheet], renderer: &mut dyn Renderer| {
+            sheets.iter_mut().map(|sheet| sheet.time(renderer).map_err(failed)).collect::<Result<Vec<_>, _>>()
+        };
+        let mut one = of_pixels(strategy, NonZeroUsize::MIN).map_err(Failure::Preparing)?;
+        let dispatch_one = Columns::slope(sheets.columns.time(&mut *one).map_err(failed)?);
+        let mut renderer = of_pixels(strategy, threads).map_err(Failure::Preparing)?;
+        let dispatch_all = Columns::slope(sheets.columns.time(&mut *renderer).map_err(failed)?);
+        let tasks = times(&mut sheets.tasks, &mut *renderer)?;
+        let begin = Instant::now();
+        let mut renderer =
+            attempt(|| strategy.prepare(Plan { threads, tile: TILE })).map_err(Failure::Preparing)?;
+        let prepare = begin.elapsed().as_nanos() as f64;
+        // The second time is neither the first nor later.
+        let uses = (0..3).map(|_| sheets.first.time(&mut *renderer).map_err(failed));
+        let uses = uses.collect::<Result<Vec<_>, _>>()?;
+        let (first, later) = (uses[0], uses[2]);
+        let pictures = times(&mut sheets.squares, &mut *renderer)?;
+        Ok(Round { dispatch_one, dispatch_all, tasks, pictures, prepare, first, later })
+    }
+
+    fn figures(
+        &self,
+        strategy: &dyn Strategy,
+        samples: &Samples,
+        reference: &Samples,
+        step_ns: f64,
+    ) -> Figures {
+        let is_band = strategy.rule().piece == Piece::Band;
+        let threads = self.threads_of(strategy).get();
+        let interval = |of: fn(&Round) -> f64| {
+            let none = Interval { median: 0.0, low: 0.0, high: 0.0 };
+            median_interval(&samples.of(of)).unwrap_or(none)
+        };
+        let tasks_a_piece = if is_band { f64::from(TASKS) / threads as f64 } else { 1.0 };
+        let tasks: Vec<(f64, f64)> = (0..=LARGEST_TASK)
+            .map(|power| {
+                let work = f64::from(1_u32 << power) * step_ns;
+                let time = samples.median(|round| round.tasks[power as usize]);
+                (work * tasks_a_piece, work * f64::from(TASKS) / (threads as f64 * time))
+            })
+            .collect();
+        let ratios: Vec<(f64, f64)> = sides()
+            .enumerate()
+            .map(|(index, side)| {
+                let rounds = reference.rounds.iter().zip(&samples.rounds);
+                let ratios = rounds.map(|(base, own)| base.pictures[index] / own.pictures[index]);
+                (f64::from(side), median(&ratios.collect::<Vec<_>>()).unwrap_or(0.0))
+            })
+            .collect();
+        let is_reference = strategy.name() == self.reference.name();
+        Figures {
+            dispatch_one: (!is_band).then(|| interval(|round| round.dispatch_one)),
+            dispatch_all: (!is_band).then(|| interval(|round| round.dispatch_all)),
+            metg: metg(&tasks, LEAST_EFFICIENCY),
+            break_even: break_even(&ratios).filter(|_| !is_reference),
+            prepare: interval(|round| round.prepare),
+            first: interval(|round| round.first),
+            later: interval(|round| round.later),
+        }
+    }
+}
+
+/// One round of one strategy, in nanoseconds.
+#[derive(Clone, Debug)]
+struct Round {
+    dispatch_one: f64,
+    dispatch_all: f64,
+    /// Of the column, by the power of two of its steps.
+    tasks: Vec<f64>,
+    /// Of the squares, by [`sides`].
+    pictures: Vec<f64>,
+    prepare: f64,
+    first: f64,
+    later: f64,
+}
+
+#[derive(Clone, Debug, Default)]
+struct Samples {
+    rounds: Vec<Round>,
+}
+
+impl Samples {
+    fn of(&self, of: impl Fn(&Round) -> f64) -> Vec<f64> {
+        self.rounds.iter().map(of).collect()
+    }
+
+    fn median(&self, of: impl Fn(&Round) -> f64) -> f64 {
+        median(&self.of(of)).unwrap_or(0.0)
+    }
+}
+
+/// Of the squares, in pixels.
+fn sides() -> impl Iterator<Item = u32> {
+    (0..).map(|power| 1 << power).take_while(|side| *side <= LARGEST_SIDE)
+}
+
+/// Everything that is rendered, made once for all rounds.
+struct Sheets {
+    step_ns: f64,
+    columns: Columns,
+    /// By the power of two of their steps.
+    tasks: Vec<Sheet>,
+    /// By [`sides`].
+    squares: Vec<Sheet>,
+    /// Of next to no work.
+    first: Sheet,
+}
+
+impl Sheets {
+    fn new(reference: &dyn Strategy) -> Result<Self, String> {
+        let step_ns = step(reference)?;
+        let steps = (PIXEL_NS / step_ns).round() as u32;
+        Ok(Self {
+            step_ns,
+            columns: Columns::new()?,
+            tasks: (0..=LARGEST_TASK)
+                .map(|power| Sheet::column(TASKS, 1 << power))
+                .collect::<Result<_, _>>()?,
+            squares: sides()
+                .map(|side| Sheet::new(synthetic::even(steps), side, side))
+                .collect::<Result<_, _>>()?,
+            first: Sheet::new(synthetic::even(0), FIRST_SIDE, FIRST_SIDE)?,
+        })
+    }
+}
+
+/// Prepared with tiles of one pixel.
+pub(crate) fn of_pixels(strategy: &dyn Strategy, threads: NonZeroUsize) -> Result<Box<dyn Renderer>, String> {
+    attempt(|| strategy.prepare(Plan { threads, tile: NonZeroU32::MIN }))
+}
+
+/// Nanoseconds a step of synthetic work, on one thread of `reference`.
+pub(crate) fn step(reference: &dyn Strategy) -> Result<f64, String> {
+    const STEPS: u32 = 1 << 10;
+    let mut renderer = of_pixels(reference, NonZeroUsize::MIN)?;
+    let (mut none, mut many) = (Sheet::column(TASKS, 0)?, Sheet::column(TASKS, STEPS)?);
+    let times = (0..9).map(|_| Ok(many.time(&mut *renderer)? - none.time(&mut *renderer)?));
+    let time = median(&times.collect::<Result<Vec<_>, String>>()?).unwrap_or(0.0);
+    // A clock too coarse must not make a step of no time.
+    Ok(time.max(1.0) / f64::from(TASKS) / f64::from(STEPS))
+}
