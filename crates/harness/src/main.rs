@@ -12,7 +12,7 @@ mod picture;
 mod progress;
 
 use clap::{Parser, Subcommand};
-use commands::{check, compare, error, intersect, render, strategies};
+use commands::{check, compare, error, explain, intersect, render, strategies};
 use std::io::{self, Write};
 use std::process::ExitCode;
 
@@ -39,6 +39,8 @@ enum Command {
     Compare(compare::Arguments),
     /// Hold the speed of every setting against its error
     Error(error::Arguments),
+    /// Say why a strategy loses: where the time of its threads goes
+    Explain(explain::Arguments),
     /// Send hard cases through the kernel that renders, results as JSON lines
     Intersect(intersect::Arguments),
 }
@@ -58,6 +60,7 @@ fn main() -> ExitCode {
         Some(Command::Check(arguments)) => check::run(&arguments),
         Some(Command::Compare(arguments)) => compare::run(arguments.scene.as_deref(), &arguments.options),
         Some(Command::Error(arguments)) => error::run(&arguments),
+        Some(Command::Explain(arguments)) => explain::run(&arguments),
         Some(Command::Intersect(arguments)) => intersect::run(&arguments),
         None => compare::run(None, &cli.compare),
     };

@@ -3,15 +3,19 @@
 //! * [`check`]: every strategy against the reference, bit for bit, with the pixel, the tile and the
 //!   thread that differ;
 //! * [`compare`]: interleaved rounds in which every timed picture is verified;
+//! * [`explanation`]: what becomes of the efficiency that a strategy loses, by an account of every thread's time
+//!   ([`efficiency`]);
 //! * [`machine`]: what was measured on, and with what.
 //!
-//! What watches a rendering is a [`Work`](rayweave_core::Work) around a `Work` ([`recorder`]) or
-//! in place of it ([`computing_threads`]): no strategy has a line for any of it.
+//! What watches a rendering is a [`Work`](rayweave_core::Work) around a `Work` ([`recorder`],
+//! [`timeline`]) or in place of it ([`computing_threads`]): no strategy has a line for any of it.
 
 mod attempt;
 pub mod check;
 pub mod compare;
 pub mod computing_threads;
+pub mod efficiency;
+pub mod explanation;
 pub mod finding;
 pub mod machine;
 mod poison;
@@ -20,6 +24,7 @@ pub mod recorder;
 pub mod schedule;
 pub mod statistics;
 pub mod stopwatch;
+pub mod timeline;
 
 pub use check::{Case, Check, Verdict};
 pub use compare::{Comparison, Entry, Row};
