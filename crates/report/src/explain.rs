@@ -4,6 +4,8 @@ mod json;
 mod map;
 mod runs;
 mod table;
+#[cfg(test)]
+mod tests;
 mod timeline;
 mod trace;
 
@@ -137,6 +139,11 @@ fn imbalance(row: &Row) -> f64 {
     let busy = || row.timeline.lanes.iter().map(|lane| lane.busy_ns() as f64);
     let mean = busy().sum::<f64>() / row.threads.max(1) as f64;
     if mean > 0.0 { busy().fold(0.0, f64::max) / mean } else { 1.0 }
+}
+
+/// What a thread is called: as it calls itself, or by its place in the order of the first pieces.
+fn label(name: Option<&str>, index: usize) -> String {
+    name.map_or_else(|| format!("thread {index}"), str::to_owned)
 }
 
 /// A colour a thread, by Okabe and Ito, "Color Universal Design", 2008; they come again after the eighth.

@@ -127,7 +127,10 @@ fn draw(row: &Row, (width, height): (u32, u32), text: &mut String) -> Drawn {
         .disable_mesh()
         .x_labels(0)
         .y_desc("us a pixel")
-        .y_label_formatter(&|value| format!("{:.3}", 10f64.powf(*value) / 1e3))
+        .axis_desc_style(("sans-serif", 12))
+        // Otherwise it would be as small as this panel is narrow.
+        .label_style(("sans-serif", 12))
+        .y_label_formatter(&|value| microseconds(*value))
         .draw()?;
     let step = (most - least) / f64::from(STEPS);
     scale.draw_series((0..STEPS).map(|place| {
@@ -136,6 +139,14 @@ fn draw(row: &Row, (width, height): (u32, u32), text: &mut String) -> Drawn {
     }))?;
     root.present()?;
     Ok(())
+}
+
+/// Three digits of a power of ten of nanoseconds, as microseconds.
+fn microseconds(logarithm: f64) -> String {
+    // That many digits stand before the point; in nanoseconds they would be three more.
+    let before = (logarithm - 3.0).floor().max(-1.0) as i32 + 1;
+    let after = usize::try_from(3 - before).unwrap_or(0);
+    format!("{:.after$}", 10f64.powf(logarithm - 3.0))
 }
 
 /// The colour of a share from 0 to 1, straight between those that are given.
@@ -183,6 +194,12 @@ mod tests {
         assert_eq!(cells.len(), 101 * 51);
         assert_eq!(cells[..2], [cell(0, 0, 2, 2, 0.5), cell(2, 0, 2, 2, 2.5)]);
         assert_eq!(cells[101 * 51 - 1], cell(200, 100, 1, 1, 200.0));
+    }
+
+    #[test]
+    fn the_scale_has_three_digits() {
+        let texts = [0.0, 2.5, 3.0, 4.2, 5.0, 7.0].map(microseconds);
+        assert_eq!(texts, ["0.001", "0.316", "1.00", "15.8", "100", "10000"]);
     }
 
     #[test]

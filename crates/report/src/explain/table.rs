@@ -1,6 +1,6 @@
 //! The explanation for people.
 
-use super::{Report, Thread, imbalance, name};
+use super::{Report, Thread, imbalance, label, name};
 use crate::{machine, style};
 use rayweave_measure::Interval;
 use rayweave_measure::efficiency::Cause;
@@ -83,9 +83,8 @@ fn threads(report: &Report<'_>, row: &Row) -> String {
     ];
     let count = |count: Option<u64>| count.map_or_else(|| "-".to_owned(), |count| count.to_string());
     let cells = |(index, thread): (usize, Thread<'_>)| {
-        let name = thread.name.map_or_else(|| index.to_string(), |name| format!("{index} ({name})"));
         [
-            name,
+            label(thread.name, index),
             ms(thread.begin_ns as f64),
             ms(thread.busy_ns as f64),
             ms(thread.between_ns as f64),

@@ -1,6 +1,6 @@
 //! A bar for each thread, from the beginning of the rendering to its end.
 
-use super::{color, runs, shaded};
+use super::{color, label, runs, shaded};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use rayweave_measure::explanation::Row;
@@ -45,7 +45,7 @@ fn draw(row: &Row, text: &mut String) -> Drawn {
         let bar = |begin: f64, end: f64| [(begin, bottom + 0.05), (end, bottom + 0.6)];
         chart.draw_series([Rectangle::new(bar(0.0, wall), IDLE.filled())])?;
         let Some(lane) = timeline.lanes.get(index) else {
-            chart.draw_series([label(format!("{index}: no piece"), bottom)])?;
+            chart.draw_series([above(format!("{}: no piece", label(None, index)), bottom)])?;
             continue;
         };
         let bars = runs::of(lane, row.long_gap_ns).into_iter().enumerate().map(|(place, run)| {
@@ -54,16 +54,16 @@ fn draw(row: &Row, text: &mut String) -> Drawn {
             Rectangle::new(bar(milliseconds(run.begin_ns), milliseconds(run.end_ns)), color.filled())
         });
         chart.draw_series(bars)?;
-        let name = lane.name.as_deref().unwrap_or("without a name");
+        let name = label(lane.name.as_deref(), index);
         let busy = 100.0 * lane.busy_ns() as f64 / timeline.wall_ns.max(1) as f64;
-        chart.draw_series([label(format!("{index}: {name}, computes {busy:.1} % of the time"), bottom)])?;
+        chart.draw_series([above(format!("{name}: computes {busy:.1} % of the time"), bottom)])?;
     }
     root.present()?;
     Ok(())
 }
 
 /// Above a thread's bar.
-fn label(text: String, bottom: f64) -> Text<'static, (f64, f64), String> {
+fn above(text: String, bottom: f64) -> Text<'static, (f64, f64), String> {
     let style = TextStyle::from(("sans-serif", 13)).pos(Pos::new(HPos::Left, VPos::Bottom));
     Text::new(text, (0.0, bottom + 0.63), style)
 }

@@ -3,7 +3,7 @@
 //! A strategy is a process and a thread is a thread; what the rendering takes as a whole is thread 0. Times are
 //! microseconds since the rendering began. Source: Google, "Trace Event Format".
 
-use super::{Report, runs};
+use super::{Report, label, runs};
 use rayweave_measure::explanation::Row;
 use serde::Serialize;
 
@@ -78,8 +78,7 @@ fn events(pid: usize, row: &Row) -> Vec<Event<'_>> {
     ];
     for (index, lane) in row.timeline.lanes.iter().enumerate() {
         let tid = index + 1;
-        let name = lane.name.clone().unwrap_or_else(|| format!("thread {index}"));
-        events.push(named("thread_name", tid, name));
+        events.push(named("thread_name", tid, label(lane.name.as_deref(), index)));
         events.extend(runs::of(lane, row.long_gap_ns).iter().map(|run| slice(pid, tid, run)));
     }
     events
