@@ -128,14 +128,6 @@ impl Losses {
         }))
     }
 
-    /// Of each cause the median over `all`, which are one or more.
-    ///
-    /// Medians of parts need not add up to the median of the whole; by how much they miss it is for the caller to say.
-    pub(crate) fn medians(all: &[Self]) -> Self {
-        let of = |cause| all.iter().map(|losses| losses.to(cause)).collect::<Vec<_>>();
-        Self(Cause::ALL.map(|cause| crate::statistics::median(&of(cause)).unwrap_or(0.0)))
-    }
-
     /// To one cause.
     #[must_use]
     pub fn to(&self, cause: Cause) -> f64 {
@@ -256,11 +248,5 @@ mod tests {
         let three = Losses::between(&one, &one, &Account::of(&timeline, 3, FREE));
         assert_eq!((three.to(Cause::Imbalance), three.to(Cause::Serial)), (2.0 * 86.0, 2.0 * 4.0));
         assert_eq!(three.total_ns(), 2.0 * 90.0);
-    }
-
-    #[test]
-    fn medians_are_of_each_cause_by_itself() {
-        let all = [[1.0, 9.0], [2.0, 7.0], [5.0, 8.0]].map(|[a, b]| Losses([a, 0.0, 0.0, b, 0.0, 0.0]));
-        assert_eq!(Losses::medians(&all), Losses([2.0, 0.0, 0.0, 8.0, 0.0, 0.0]));
     }
 }

@@ -29,7 +29,7 @@ fn heading(explanation: &Explanation, row: &Row) -> String {
     let speedup = reference_ns / wall_ns;
     format!(
         "{strategy} on {threads} thread{}: {} ms, {reference} {} ms: speed-up {speedup:.2}, efficiency {:.0} %; \
-         medians of {rounds} rounds",
+         the quickest of {rounds} rounds",
         plural(*threads),
         ms(*wall_ns),
         ms(*reference_ns),

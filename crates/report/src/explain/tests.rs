@@ -85,7 +85,7 @@ fn text_puts_a_figure_to_each_cause_and_adds_them_up() {
         assert!(lines.contains(&expected), "{expected:?} in\n{text}");
     };
     assert!(text.starts_with(
-        "queue on 2 threads: 60.00 ms, sequential 100.00 ms: speed-up 1.67, efficiency 83 %; medians of 7 rounds\n"
+        "queue on 2 threads: 60.00 ms, sequential 100.00 ms: speed-up 1.67, efficiency 83 %; the quickest of 7 rounds\n"
     ));
     has("useful work 100.00 83.3 % +1.67");
     has("redundant work 2.00 1.7 % -0.03");
