@@ -12,7 +12,7 @@ mod picture;
 mod progress;
 
 use clap::{Parser, Subcommand};
-use commands::{check, compare, error, intersect, overhead, predict, render, strategies};
+use commands::{check, compare, error, explain, intersect, overhead, predict, render, strategies};
 use std::io::{self, Write};
 use std::process::ExitCode;
 
@@ -43,6 +43,8 @@ enum Command {
     Predict(predict::Arguments),
     /// Hold the speed of every setting against its error
     Error(error::Arguments),
+    /// Say why a strategy loses: where the time of its threads goes
+    Explain(explain::Arguments),
     /// Send hard cases through the kernel that renders, results as JSON lines
     Intersect(intersect::Arguments),
 }
@@ -64,6 +66,7 @@ fn main() -> ExitCode {
         Some(Command::Overhead(arguments)) => overhead::run(&arguments),
         Some(Command::Predict(arguments)) => predict::run(&arguments),
         Some(Command::Error(arguments)) => error::run(&arguments),
+        Some(Command::Explain(arguments)) => explain::run(&arguments),
         Some(Command::Intersect(arguments)) => intersect::run(&arguments),
         None => compare::run(None, &cli.compare),
     };

@@ -39,7 +39,7 @@ fn commands(document: &str) -> Vec<String> {
 
 /// Small pictures do: what is tested is that the command is understood and succeeds.
 fn small(arguments: &str) -> String {
-    let takes_size = ["render", "check", "compare", "error", "predict", "-"]
+    let takes_size = ["render", "check", "compare", "error", "explain", "predict", "-"]
         .iter()
         .any(|word| arguments.starts_with(word));
     if arguments.starts_with("error") {

@@ -5,16 +5,20 @@
 //! * [`compare`]: interleaved rounds in which every timed picture is verified;
 //! * [`overhead`]: what a strategy costs beside its work, on synthetic work;
 //! * [`forecast`]: what more threads would make of a picture, beside what those here make of it;
+//! * [`explanation`]: what becomes of the efficiency that a strategy loses, by an account of every thread's time
+//!   ([`efficiency`]);
 //! * [`machine`]: what was measured on, and with what.
 //!
-//! What watches a rendering is a [`Work`](rayweave_core::Work) around a `Work` ([`recorder`]) or
-//! in place of it ([`computing_threads`]): no strategy has a line for any of it.
+//! What watches a rendering is a [`Work`](rayweave_core::Work) around a `Work` ([`recorder`],
+//! [`timeline`]) or in place of it ([`computing_threads`]): no strategy has a line for any of it.
 
 mod attempt;
 pub mod calibration;
 pub mod check;
 pub mod compare;
 pub mod computing_threads;
+pub mod efficiency;
+pub mod explanation;
 pub mod finding;
 pub mod forecast;
 pub mod independent;
@@ -29,6 +33,7 @@ mod sheet;
 pub mod statistics;
 pub mod stopwatch;
 pub mod synthetic;
+pub mod timeline;
 
 pub use check::{Case, Check, Verdict};
 pub use compare::{Comparison, Entry, Row};

@@ -3,6 +3,7 @@
 pub mod check;
 pub mod compare;
 pub mod error;
+pub mod explain;
 pub mod intersect;
 pub mod overhead;
 pub mod predict;

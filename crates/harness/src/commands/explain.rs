@@ -1,0 +1,143 @@
+//! `rayweave explain`: why a strategy loses what it loses.
+
+use crate::input::Input;
+use crate::options::{SceneOptions, TileOption, all_threads, distinct, parse_strategy, parse_threads};
+use crate::output::{PendingFile, distinct_files};
+use crate::picture::Format;
+use crate::{Outcome, print, progress};
+use clap::Args;
+use rayweave_core::{Area, Strategy, primary_rays};
+use rayweave_measure::explanation::{Experiment, ExplainError};
+use rayweave_measure::{Machine, Protocol};
+use rayweave_report::explain::Report;
+use std::fs;
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+#[derive(Args)]
+pub struct Arguments {
+    /// Scene file [default: the report's scene, built in]
+    scene: Option<PathBuf>,
+    /// Strategies to explain [default: the recommended one]
+    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = parse_strategy)]
+    strategy: Vec<&'static dyn Strategy>,
+    /// Number of computing threads [default: what the machine and its quota allow]
+    #[arg(long, value_name = "N", value_parser = parse_threads)]
+    threads: Option<NonZeroUsize>,
+    #[command(flatten)]
+    tile: TileOption,
+    /// Write the result as JSON
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// Write the time lines in the trace event format, for Perfetto (ui.perfetto.dev) or chrome://tracing
+    #[arg(long, value_name = "FILE")]
+    trace: Option<PathBuf>,
+    /// Write of each strategy the time line, who computed which pixel, and what each cost into this folder
+    #[arg(long, value_name = "FOLDER")]
+    pictures: Option<PathBuf>,
+    #[command(flatten)]
+    options: SceneOptions,
+}
+
+/// A strategy takes three renderings a round, one of them on a single thread.
+const PROTOCOL: Protocol =
+    Protocol { min_rounds: 5, max_rounds: 40, budget: Duration::from_secs(20), seed: 1 };
+
+/// The most pixels of a picture: each may be a piece of which a record is kept, three times 40 bytes at the most.
+const MAX_PIXELS: u64 = 1 << 24;
+
+/// Steps of the progress bar.
+const STEPS: f64 = 1000.0;
+
+pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
+    distinct_files(&[&arguments.scene, &arguments.json, &arguments.trace])?;
+    let [json, trace] =
+        [&arguments.json, &arguments.trace].map(|path| path.as_deref().map(PendingFile::create).transpose());
+    let (json, trace) = (json?, trace?);
+    let input = Input::load(arguments.scene.as_deref(), &arguments.options)?;
+    let (width, height) = (input.width, input.height);
+    if u64::from(width) * u64::from(height) > MAX_PIXELS {
+        return Err(format!(
+            "{width} x {height} pixels are too many to record each: at most {MAX_PIXELS}, use a smaller --size"
+        ));
+    }
+    let recommended = [rayweave_registry::recommended()];
+    let strategies =
+        distinct(if arguments.strategy.is_empty() { &recommended } else { &arguments.strategy }, |s| {
+            s.name()
+        });
+    let pictures =
+        arguments.pictures.as_deref().map(|folder| picture_files(folder, &strategies)).transpose()?;
+    let tile = arguments.tile.of(width, height)?;
+    let work = input.work(width, height)?;
+    let experiment = Experiment {
+        work: &*work,
+        size: (width, height),
+        tile,
+        reference: rayweave_registry::reference(),
+        protocol: Protocol { budget: PROTOCOL.budget * strategies.len() as u32, ..PROTOCOL },
+    };
+    let bar = progress::bar(STEPS as u64);
+    // Drawn between the timed spans.
+    let explained = experiment.run(&strategies, arguments.threads.unwrap_or_else(all_threads), |fraction| {
+        bar.set_position((fraction * STEPS) as u64);
+    });
+    bar.finish_and_clear();
+    let explanation = match explained {
+        Ok(explanation) => explanation,
+        Err(error @ ExplainError::Different { .. }) => {
+            print(&format!("{}\n{error}\n", input.describe()))?;
+            return Ok(Outcome::Failed);
+        }
+        Err(error) => return Err(error.to_string()),
+    };
+
+    let rays = |tile: Area| {
+        primary_rays(tile.width, tile.height, &input.scene.render, input.execution.share_samples)
+    };
+    let machine = Machine::here();
+    let report = Report {
+        scene: &input.name,
+        size: (width, height),
+        tile: tile.get(),
+        explanation: &explanation,
+        rays: &rays,
+        machine: &machine,
+    };
+    print(&format!("{}\n\n{}\n", input.describe(), report.text()))?;
+    json.map_or(Ok(()), |file| file.finish(report.json().as_bytes()))?;
+    trace.map_or(Ok(()), |file| file.finish(report.trace().as_bytes()))?;
+    pictures.map_or(Ok(()), |files| write_pictures(files, &report))?;
+    Ok(Outcome::Held)
+}
+
+/// The pictures of one strategy.
+struct PictureFiles {
+    timeline: PendingFile,
+    owners: PendingFile,
+    cost: PendingFile,
+}
+
+/// The folder, and that all of them can be written to it, before anything is measured.
+fn picture_files(folder: &Path, strategies: &[&dyn Strategy]) -> Result<Vec<PictureFiles>, String> {
+    fs::create_dir_all(folder).map_err(|e| format!("{}: cannot be made: {e}", folder.display()))?;
+    let of = |strategy: &&dyn Strategy| {
+        let file = |what| PendingFile::create(&folder.join(format!("{}-{what}", strategy.name())));
+        Ok(PictureFiles {
+            timeline: file("timeline.svg")?,
+            owners: file("threads.png")?,
+            cost: file("cost.svg")?,
+        })
+    };
+    strategies.iter().map(of).collect()
+}
+
+fn write_pictures(files: Vec<PictureFiles>, report: &Report<'_>) -> Result<(), String> {
+    for (files, row) in files.into_iter().zip(&report.explanation.rows) {
+        files.timeline.finish(report.timeline(row)?.as_bytes())?;
+        files.owners.finish(&Format::Png.encode(&report.owners(row).map_err(|e| e.to_string())?)?)?;
+        files.cost.finish(report.cost(row)?.as_bytes())?;
+    }
+    Ok(())
+}

@@ -1,0 +1,249 @@
+//! Why strategies lose what they lose: renderings that are recorded beside renderings that are not, in the same
+//! interleaved rounds.
+//!
+//! What is explained is the loss of the quickest plain renderings: what slows a rendering down from outside is no
+//! fault of its strategy. The explanation is that of the quickest recorded ones, the cost of recording taken off. Their
+//! accounts add up exactly; how far they miss the plain ones is part of the result. Source for the quickest: Chen and
+//! Revels, "Robust benchmarking in noisy environments", 2016.
+
+use crate::attempt::attempt;
+use crate::efficiency::{Account, Losses};
+use crate::poison;
+use crate::schedule::Protocol;
+use crate::statistics::{Interval, ratio_interval};
+use crate::timeline::{Cost, TimeRecorder, Timeline};
+use rayweave_core::image::ImageError;
+use rayweave_core::{Digest, Image, Plan, Strategy, Work};
+use std::num::{NonZeroU32, NonZeroUsize};
+use std::time::Instant;
+use thiserror::Error;
+
+#[cfg(test)]
+mod tests;
+
+/// What is rendered, and against what.
+#[derive(Clone, Copy)]
+pub struct Experiment<'a> {
+    /// What every rendering computes.
+    pub work: &'a dyn Work,
+    /// Of the picture, in pixels.
+    pub size: (u32, u32),
+    /// The side of a tile, in pixels.
+    pub tile: NonZeroU32,
+    /// What a loss is measured against, on one thread.
+    pub reference: &'a dyn Strategy,
+    /// How long to measure.
+    pub protocol: Protocol,
+}
+
+/// Why nothing was explained.
+#[derive(Debug, Error)]
+pub enum ExplainError {
+    /// There is no such picture.
+    #[error(transparent)]
+    Image(#[from] ImageError),
+    /// A strategy failed.
+    #[error("{0}")]
+    Failed(String),
+    /// Its times would mean nothing.
+    #[error("{strategy}: drew another picture than the reference (see `rayweave check`)")]
+    Different {
+        /// The strategy's name.
+        strategy: &'static str,
+    },
+}
+
+/// What became of the efficiency of some strategies.
+#[derive(Clone, Debug)]
+pub struct Explanation {
+    /// The reference's name.
+    pub reference: &'static str,
+    /// Its shortest time, in nanoseconds, not recorded.
+    pub reference_ns: f64,
+    /// In the order asked for.
+    pub rows: Vec<Row>,
+    /// Of every picture.
+    pub digest: Digest,
+    /// Rounds measured.
+    pub rounds: usize,
+    /// What was taken off the recorded times.
+    pub cost: Cost,
+}
+
+/// What became of the efficiency of one strategy.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// The strategy's name.
+    pub strategy: &'static str,
+    /// The threads it was given.
+    pub threads: usize,
+    /// Its shortest time, in nanoseconds, not recorded.
+    pub wall_ns: f64,
+    /// What it loses of its thread-time, in nanoseconds, not recorded: threads times its time, less the reference's.
+    pub lost_ns: f64,
+    /// To what. Their sum misses [`Row::lost_ns`] by what recorded and plain renderings differ in.
+    pub losses: Losses,
+    /// Recorded over plain time, within a round.
+    pub recorded: Interval,
+    /// A gap between two pieces that is longer than 999 of 1000 on a single thread, in nanoseconds.
+    pub long_gap_ns: f64,
+    /// The quickest of the recorded renderings, the cost of recording in it.
+    pub timeline: Timeline,
+}
+
+impl Row {
+    /// Threads times time, in nanoseconds.
+    #[must_use]
+    pub fn thread_time_ns(&self) -> f64 {
+        self.threads as f64 * self.wall_ns
+    }
+}
+
+/// A strategy with a number of threads, recorded or not, and what its renderings gave.
+struct Series<'a> {
+    strategy: &'a dyn Strategy,
+    threads: NonZeroUsize,
+    recorded: bool,
+    /// For the pieces of a thread.
+    room: usize,
+    wall_ns: Vec<u64>,
+    /// Of the recorded renderings.
+    quickest: Option<Timeline>,
+}
+
+/// Of a strategy, the places of its series.
+struct Places {
+    /// Recorded, on one thread.
+    alone: usize,
+    plain: usize,
+    recorded: usize,
+}
+
+impl Experiment<'_> {
+    /// Explains `strategies` on `threads` threads each. `progress` is told how much is done, 0 to 1.
+    ///
+    /// # Errors
+    ///
+    /// A strategy fails, or draws another picture than the reference.
+    pub fn run(
+        &self,
+        strategies: &[&dyn Strategy],
+        threads: NonZeroUsize,
+        mut progress: impl FnMut(f64),
+    ) -> Result<Explanation, ExplainError> {
+        let mut image = Image::new(self.size.0, self.size.1)?;
+        let cost = Cost::here();
+        let mut series = vec![
+            Series::new(self.reference, NonZeroUsize::MIN, false),
+            Series::new(self.reference, NonZeroUsize::MIN, true),
+        ];
+        let mut places = Vec::with_capacity(strategies.len());
+        for &strategy in strategies {
+            let mut add = |threads, recorded| {
+                series.push(Series::new(strategy, threads, recorded));
+                series.len() - 1
+            };
+            let recorded = add(threads, true);
+            let alone = if threads.get() == 1 { recorded } else { add(NonZeroUsize::MIN, true) };
+            places.push(Places { alone, plain: add(threads, false), recorded });
+        }
+
+        let begin = Instant::now();
+        let mut digest = None;
+        let mut schedule = self.protocol.schedule(series.len());
+        while let Some(turn) = schedule.next(begin.elapsed()) {
+            progress(turn.fraction);
+            let series = &mut series[turn.entry];
+            series.render(self, &mut image, turn.round.is_some())?;
+            let found = image.digest();
+            if *digest.get_or_insert(found) != found {
+                return Err(ExplainError::Different { strategy: series.strategy.name() });
+            }
+        }
+        Ok(Explanation {
+            reference: self.reference.name(),
+            reference_ns: series[0].shortest_ns(),
+            rows: places.iter().map(|places| row(&series, places, cost)).collect(),
+            digest: digest.unwrap_or_else(|| image.digest()),
+            rounds: schedule.rounds(),
+            cost,
+        })
+    }
+}
+
+fn row(series: &[Series<'_>], &Places { alone, plain, recorded }: &Places, cost: Cost) -> Row {
+    let threads = series[plain].threads.get();
+    let wall_ns = series[plain].shortest_ns();
+    // The first two are the reference's.
+    let [sequential, on_one, on_all] = [1, alone, recorded].map(|place| series[place].account(cost));
+    let over_plain = ratio_interval(&series[recorded].wall_ns, &series[plain].wall_ns);
+    Row {
+        strategy: series[plain].strategy.name(),
+        threads,
+        wall_ns,
+        lost_ns: threads as f64 * wall_ns - series[0].shortest_ns(),
+        losses: Losses::between(&sequential, &on_one, &on_all),
+        recorded: over_plain.unwrap_or(Interval { median: 1.0, low: 1.0, high: 1.0 }),
+        long_gap_ns: series[alone].quickest.as_ref().map_or(0.0, long_gap_ns),
+        timeline: series[recorded].quickest.clone().unwrap_or_default(),
+    }
+}
+
+impl<'a> Series<'a> {
+    fn new(strategy: &'a dyn Strategy, threads: NonZeroUsize, recorded: bool) -> Self {
+        Self { strategy, threads, recorded, room: 0, wall_ns: Vec::new(), quickest: None }
+    }
+
+    /// Renders one picture, and takes note of it if it `counts`.
+    fn render(
+        &mut self,
+        experiment: &Experiment<'_>,
+        image: &mut Image,
+        counts: bool,
+    ) -> Result<(), ExplainError> {
+        let plan = Plan { threads: self.threads, tile: experiment.tile };
+        let recorder =
+            self.recorded.then(|| TimeRecorder::new(experiment.work, self.threads.get(), self.room));
+        let work = recorder.as_ref().map_or(experiment.work, |recorder| recorder as &dyn Work);
+        let mut renderer = attempt(|| self.strategy.prepare(plan)).map_err(ExplainError::Failed)?;
+        poison::fill(image);
+        let begin = Instant::now();
+        let result = attempt(|| renderer.render(work, image));
+        let end = Instant::now();
+        result.map_err(ExplainError::Failed)?;
+
+        let timeline = recorder.map(|recorder| recorder.finish(begin, end));
+        if let Some(timeline) = &timeline {
+            // Half as many again as an even share.
+            self.room = timeline.pieces().div_ceil(self.threads.get()) * 3 / 2;
+        }
+        if !counts {
+            return Ok(());
+        }
+        self.wall_ns.push(u64::try_from((end - begin).as_nanos()).unwrap_or(u64::MAX));
+        let is_quicker = |timeline: &Timeline| {
+            self.quickest.as_ref().is_none_or(|quickest| timeline.wall_ns < quickest.wall_ns)
+        };
+        if let Some(timeline) = timeline.filter(is_quicker) {
+            self.quickest = Some(timeline);
+        }
+        Ok(())
+    }
+
+    fn shortest_ns(&self) -> f64 {
+        self.wall_ns.iter().min().map_or(0.0, |&ns| ns as f64)
+    }
+
+    /// Of the quickest recorded rendering; of none if there is none.
+    fn account(&self, cost: Cost) -> Account {
+        let none = Timeline::default();
+        Account::of(self.quickest.as_ref().unwrap_or(&none), self.threads.get(), cost)
+    }
+}
+
+/// Longer than 999 of 1000 gaps between pieces; 0 if there are none.
+fn long_gap_ns(timeline: &Timeline) -> f64 {
+    let mut gaps: Vec<u64> = timeline.lanes.iter().flat_map(|lane| lane.gaps_ns()).collect();
+    let rank = gaps.len() * 999 / 1000;
+    if gaps.is_empty() { 0.0 } else { *gaps.select_nth_unstable(rank).1 as f64 }
+}

@@ -1,0 +1,111 @@
+//! Experiments with strategies of one thread that do as they are told, on a work that only fills.
+
+use super::*;
+use crate::timeline::{Lane, Piece};
+use rayweave_core::strategy::{Dealing, Delivery, Rule};
+use rayweave_core::{Area, Renderer, StrategyError, ThreadsStart, Tile, strategy};
+use std::time::Duration;
+
+const SIDE: NonZeroU32 = NonZeroU32::new(2).expect("not 0");
+
+struct Grey;
+
+impl Work for Grey {
+    fn render(&self, tile: &mut Tile<'_>) {
+        tile.rows().for_each(|(_, row)| row.fill([0.5; 3]));
+    }
+}
+
+/// What a strategy does with the tiles.
+#[derive(Clone, Copy)]
+enum Obedience {
+    AllOfThem,
+    AllButTheFirst,
+    Refuses,
+}
+
+impl Strategy for Obedience {
+    fn name(&self) -> &'static str {
+        match self {
+            Self::AllOfThem => "all",
+            Self::AllButTheFirst => "all-but-one",
+            Self::Refuses => "refuses",
+        }
+    }
+
+    fn summary(&self) -> &'static str {
+        "one thread"
+    }
+
+    fn threads_start(&self) -> ThreadsStart {
+        ThreadsStart::Never
+    }
+
+    fn rule(&self) -> Rule {
+        Rule { piece: strategy::Piece::Tile, dealing: Dealing::Equal, delivery: Delivery::InPlace }
+    }
+
+    fn prepare(&self, _: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
+        match self {
+            Self::Refuses => Err(StrategyError::Unavailable { strategy: self.name(), reason: "not today" }),
+            _ => Ok(Box::new(*self)),
+        }
+    }
+}
+
+impl Renderer for Obedience {
+    fn render(&mut self, work: &dyn Work, image: &mut Image) -> Result<(), StrategyError> {
+        let skipped = usize::from(matches!(self, Self::AllButTheFirst));
+        image.tiles(SIDE).iter_mut().skip(skipped).for_each(|tile| work.render(tile));
+        Ok(())
+    }
+}
+
+/// With two threads each, in three rounds.
+fn explain(strategies: &[&dyn Strategy]) -> Result<Explanation, ExplainError> {
+    let protocol = Protocol { min_rounds: 3, max_rounds: 3, budget: Duration::ZERO, seed: 1 };
+    let reference = &Obedience::AllOfThem;
+    let experiment = Experiment { work: &Grey, size: (5, 4), tile: SIDE, reference, protocol };
+    experiment.run(strategies, NonZeroUsize::new(2).expect("not 0"), |_| ())
+}
+
+#[test]
+fn each_strategy_has_a_row_and_its_pieces() {
+    let explanation = explain(&[&Obedience::AllOfThem, &Obedience::AllOfThem]).expect("explained");
+    assert_eq!((explanation.rounds, explanation.reference), (3, "all"));
+    assert_eq!(explanation.digest, Image::filled(5, 4, [0.5; 3]).expect("a picture").digest());
+    assert_eq!(explanation.rows.len(), 2);
+    for row in &explanation.rows {
+        assert_eq!((row.strategy, row.threads), ("all", 2));
+        let areas: Vec<_> = row.timeline.lanes[0].pieces.iter().map(|p| (p.area.x, p.area.y)).collect();
+        assert_eq!(areas, [(0, 0), (2, 0), (4, 0), (0, 2), (2, 2), (4, 2)]);
+        // Whatever the times: the second thread has none of the work.
+        assert_eq!(row.timeline.lanes.len(), 1);
+        assert_eq!(row.lost_ns, 2.0 * row.wall_ns - explanation.reference_ns);
+    }
+}
+
+/// Catches figures of a strategy that draws something else, or nothing.
+#[test]
+fn what_is_wrong_is_not_explained() {
+    let wrong = explain(&[&Obedience::AllOfThem, &Obedience::AllButTheFirst]).expect_err("another picture");
+    assert!(matches!(wrong, ExplainError::Different { strategy: "all-but-one" }), "{wrong}");
+    let failed = explain(&[&Obedience::Refuses]).expect_err("no picture");
+    assert_eq!(failed.to_string(), "refuses: unavailable here: not today");
+}
+
+#[test]
+fn a_long_gap_is_longer_than_999_of_1000() {
+    let mut end = 0;
+    let mut after = |gap: u64| {
+        let begin = end + gap;
+        end = begin + 5;
+        Piece { area: Area { x: 0, y: 0, width: 1, height: 1 }, begin_ns: begin, end_ns: end }
+    };
+    // The first has no gap before it.
+    let pieces = std::iter::once(50_000).chain((1..=2000).rev()).map(&mut after).collect();
+    let timeline = Timeline { wall_ns: 0, lanes: vec![Lane { name: None, pieces }] };
+    // Of 2000 gaps two are as long as that or longer.
+    assert_eq!(long_gap_ns(&timeline), 1999.0);
+    assert_eq!(long_gap_ns(&Timeline::default()), 0.0);
+}

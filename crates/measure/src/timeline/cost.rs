@@ -1,0 +1,47 @@
+//! What it costs to record.
+
+use super::{Lane, TimeRecorder};
+use crate::statistics::median;
+use rayweave_core::{Tile, Work};
+use std::time::Instant;
+
+/// What the recording of a piece adds to a rendering, in nanoseconds.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Cost {
+    /// To the time of the piece itself: the work's share of two looks at the clock.
+    pub inside_ns: f64,
+    /// To the time between it and the next.
+    pub outside_ns: f64,
+}
+
+/// How often it is measured; the median keeps out what else the machine does.
+const BATCHES: usize = 21;
+
+/// Pieces of a batch.
+const PIECES: u32 = 2000;
+
+struct Nothing;
+
+impl Work for Nothing {
+    fn render(&self, _: &mut Tile<'_>) {}
+}
+
+impl Cost {
+    /// Records work that does nothing. Takes a few milliseconds.
+    #[must_use]
+    pub fn here() -> Self {
+        let lanes: Vec<Lane> = (0..BATCHES).filter_map(|_| batch()).collect();
+        let per_piece = |of: fn(&Lane) -> u64| {
+            let means: Vec<f64> = lanes.iter().map(|lane| of(lane) as f64 / f64::from(PIECES)).collect();
+            median(&means).unwrap_or(0.0)
+        };
+        Self { inside_ns: per_piece(Lane::busy_ns), outside_ns: per_piece(|lane| lane.gaps_ns().sum()) }
+    }
+}
+
+fn batch() -> Option<Lane> {
+    let recorder = TimeRecorder::new(&Nothing, 1, PIECES as usize);
+    let begin = Instant::now();
+    (0..PIECES).for_each(|x| recorder.render(&mut Tile::pixel(x, 0, &mut [0.0; 3])));
+    recorder.finish(begin, Instant::now()).lanes.pop()
+}

@@ -1,0 +1,130 @@
+//! The explanation for other programs.
+
+use super::{Report, Thread, imbalance};
+use crate::json::{self, Ratio};
+use crate::machine::Facts;
+use rayweave_measure::efficiency::{Cause, Losses};
+use rayweave_measure::explanation::Row;
+use serde::Serialize;
+
+/// It changes when a key changes its meaning or goes.
+const SCHEMA: u32 = 1;
+
+#[derive(Serialize)]
+struct Object<'a> {
+    schema: u32,
+    scene: &'a str,
+    width: u32,
+    height: u32,
+    tile: u32,
+    digest: String,
+    rounds: usize,
+    reference: &'a str,
+    reference_ns: f64,
+    recording_inside_ns: f64,
+    recording_between_ns: f64,
+    machine: Facts<'a>,
+    results: Vec<Entry<'a>>,
+}
+
+#[derive(Serialize)]
+struct Entry<'a> {
+    strategy: &'a str,
+    threads: usize,
+    wall_ns: f64,
+    speedup: f64,
+    lost_ns: f64,
+    losses_ns: Causes,
+    unexplained_ns: f64,
+    recorded_over_plain: Ratio,
+    imbalance: f64,
+    long_gap_ns: f64,
+    threads_recorded: Vec<ThreadEntry<'a>>,
+}
+
+#[derive(Serialize)]
+struct Causes {
+    redundant: f64,
+    slowdown: f64,
+    dispatch: f64,
+    contention: f64,
+    imbalance: f64,
+    serial: f64,
+}
+
+#[derive(Serialize)]
+struct ThreadEntry<'a> {
+    name: Option<&'a str>,
+    begin_ns: u64,
+    end_ns: u64,
+    busy_ns: u64,
+    between_ns: u64,
+    idle_ns: u64,
+    pieces: usize,
+    pixels: u64,
+    primary_rays: Option<u64>,
+    long_gaps: usize,
+    long_gaps_ns: u64,
+}
+
+pub(super) fn text(report: &Report<'_>) -> String {
+    let Report { scene, size: (width, height), tile, explanation, machine, .. } = *report;
+    json::text(&Object {
+        schema: SCHEMA,
+        scene,
+        width,
+        height,
+        tile,
+        digest: explanation.digest.to_string(),
+        rounds: explanation.rounds,
+        reference: explanation.reference,
+        reference_ns: explanation.reference_ns,
+        recording_inside_ns: explanation.cost.inside_ns,
+        recording_between_ns: explanation.cost.outside_ns,
+        machine: Facts::new(machine),
+        results: explanation.rows.iter().map(|row| entry(report, row)).collect(),
+    })
+}
+
+fn entry<'a>(report: &Report<'a>, row: &'a Row) -> Entry<'a> {
+    Entry {
+        strategy: row.strategy,
+        threads: row.threads,
+        wall_ns: row.wall_ns,
+        speedup: report.explanation.reference_ns / row.wall_ns,
+        lost_ns: row.lost_ns,
+        losses_ns: causes(&row.losses),
+        unexplained_ns: row.lost_ns - row.losses.total_ns(),
+        recorded_over_plain: row.recorded.into(),
+        imbalance: imbalance(row),
+        long_gap_ns: row.long_gap_ns,
+        threads_recorded: Thread::all(row, report.rays).into_iter().map(thread).collect(),
+    }
+}
+
+fn causes(losses: &Losses) -> Causes {
+    Causes {
+        redundant: losses.to(Cause::Redundant),
+        slowdown: losses.to(Cause::Slowdown),
+        dispatch: losses.to(Cause::Dispatch),
+        contention: losses.to(Cause::Contention),
+        imbalance: losses.to(Cause::Imbalance),
+        serial: losses.to(Cause::Serial),
+    }
+}
+
+fn thread(thread: Thread<'_>) -> ThreadEntry<'_> {
+    ThreadEntry {
+        name: thread.name,
+        begin_ns: thread.begin_ns,
+        end_ns: thread.end_ns,
+        busy_ns: thread.busy_ns,
+        between_ns: thread.between_ns,
+        idle_ns: thread.idle_ns,
+        pieces: thread.pieces,
+        pixels: thread.pixels,
+        primary_rays: thread.primary_rays,
+        long_gaps: thread.long_gaps,
+        long_gaps_ns: thread.long_gaps_ns,
+    }
+}

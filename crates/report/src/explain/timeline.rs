@@ -1,0 +1,73 @@
+//! A bar for each thread, from the beginning of the rendering to its end.
+
+use super::{color, label, runs, shaded};
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+use rayweave_measure::explanation::Row;
+
+/// Of the whole drawing, in pixels.
+const WIDTH: u32 = 1200;
+
+/// Of a thread, in pixels.
+const LANE: u32 = 52;
+
+/// Of what surrounds the threads, in pixels.
+const FRAME: u32 = 110;
+
+/// What nobody computes in.
+const IDLE: RGBColor = RGBColor(235, 235, 235);
+
+type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
+
+pub(super) fn svg(row: &Row) -> Result<String, String> {
+    let mut text = String::new();
+    draw(row, &mut text).map_err(|e| format!("the time line cannot be drawn: {e}"))?;
+    Ok(text)
+}
+
+fn draw(row: &Row, text: &mut String) -> Drawn {
+    let timeline = &row.timeline;
+    let lanes = timeline.lanes.len().max(row.threads);
+    let height = u32::try_from(lanes).unwrap_or(u32::MAX).saturating_mul(LANE).saturating_add(FRAME);
+    let root = SVGBackend::with_string(text, (WIDTH, height)).into_drawing_area();
+    root.fill(&WHITE)?;
+    let wall = milliseconds(timeline.wall_ns);
+    let title = format!("{}, {} threads: each thread's pieces; grey: none", row.strategy, row.threads);
+    let mut chart = ChartBuilder::on(&root)
+        .caption(title, ("sans-serif", 20))
+        .margin(12)
+        .x_label_area_size(44)
+        .build_cartesian_2d(0.0..wall, 0.0..lanes as f64)?;
+    chart.configure_mesh().disable_y_mesh().y_labels(0).x_desc("ms since the rendering began").draw()?;
+    for index in 0..lanes {
+        // The first thread is on top; below its name is its bar.
+        let bottom = (lanes - 1 - index) as f64;
+        let bar = |begin: f64, end: f64| [(begin, bottom + 0.05), (end, bottom + 0.6)];
+        chart.draw_series([Rectangle::new(bar(0.0, wall), IDLE.filled())])?;
+        let Some(lane) = timeline.lanes.get(index) else {
+            chart.draw_series([above(format!("{}: no piece", label(None, index)), bottom)])?;
+            continue;
+        };
+        let bars = runs::of(lane, row.long_gap_ns).into_iter().enumerate().map(|(place, run)| {
+            // Neighbours differ, so that pieces can be told apart.
+            let color = if place % 2 == 0 { color(index) } else { shaded(color(index)) };
+            Rectangle::new(bar(milliseconds(run.begin_ns), milliseconds(run.end_ns)), color.filled())
+        });
+        chart.draw_series(bars)?;
+        let name = label(lane.name.as_deref(), index);
+        let busy = 100.0 * lane.busy_ns() as f64 / timeline.wall_ns.max(1) as f64;
+        chart.draw_series([above(format!("{name}: computes {busy:.1} % of the time"), bottom)])?;
+    }
+    root.present()?;
+    Ok(())
+}
+
+/// Above a thread's bar.
+fn above(text: String, bottom: f64) -> Text<'static, (f64, f64), String> {
+    let style = TextStyle::from(("sans-serif", 13)).pos(Pos::new(HPos::Left, VPos::Bottom));
+    Text::new(text, (0.0, bottom + 0.63), style)
+}
+
+fn milliseconds(ns: u64) -> f64 {
+    ns as f64 / 1e6
+}
