@@ -7,7 +7,7 @@
 /// A law with its fitted shares.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Law {
-    /// The share of the work that waits for its turn, Gunther's sigma: 0 or more. In Amdahl's law the serial share.
+    /// The share of the work that waits for its turn, Gunther's sigma: 0 to 1. In Amdahl's law the serial share.
     pub serial: f64,
     /// What each thread costs each other one, Gunther's kappa, as a share of the work: 0 or more. In Amdahl's law 0.
     pub crosstalk: f64,
@@ -34,7 +34,7 @@ impl Law {
 #[must_use]
 pub fn amdahl(points: &[(usize, f64)]) -> Option<Law> {
     let sums = Sums::of(points)?;
-    Some(law(points, (sums.bs / sums.ss).max(0.0), 0.0))
+    Some(law(points, (sums.bs / sums.ss).clamp(0.0, 1.0), 0.0))
 }
 
 /// Gunther's law for `points`, as [`amdahl`]. `None` without points of two different numbers of threads above one.
@@ -47,13 +47,14 @@ pub fn usl(points: &[(usize, f64)]) -> Option<Law> {
         return None;
     }
     let (serial, crosstalk) = ((bs * kk - bk * sk) / determinant, (bk * ss - bs * sk) / determinant);
-    // Where a share comes out negative the best one allowed is 0, and the other is fitted alone.
+    // Where a share comes out beyond its bounds the best one allowed is there, and the other is fitted to the rest.
     Some(if crosstalk < 0.0 {
-        law(points, (bs / ss).max(0.0), 0.0)
-    } else if serial < 0.0 {
-        law(points, 0.0, (bk / kk).max(0.0))
-    } else {
+        law(points, (bs / ss).clamp(0.0, 1.0), 0.0)
+    } else if (0.0..=1.0).contains(&serial) {
         law(points, serial, crosstalk)
+    } else {
+        let serial = serial.clamp(0.0, 1.0);
+        law(points, serial, ((bk - serial * sk) / kk).max(0.0))
     })
 }
 
@@ -121,9 +122,10 @@ mod tests {
         assert_eq!((law.crosstalk, law.peak()), (0.0, None));
     }
 
-    /// Catches shares below 0, which would promise more than `n` times the speed.
+    /// Catches shares below 0, which would promise more than `n` times the speed, and work of which more than all is
+    /// serial.
     #[test]
-    fn no_share_is_negative() {
+    fn shares_are_kept_within_bounds() {
         let faster = points(|n| 1.1 * n);
         assert_eq!(amdahl(&faster).map(|law| law.serial), Some(0.0));
         assert_eq!(usl(&faster).map(|law| (law.serial, law.crosstalk)), Some((0.0, 0.0)));
@@ -133,6 +135,11 @@ mod tests {
         // Good for long, then bad: the serial share alone would be negative.
         let cliff = usl(&[(2, 2.0), (4, 4.0), (64, 8.0)]).expect("a law");
         assert!(cliff.serial == 0.0 && cliff.crosstalk > 0.0, "{cliff:?}");
+        // Threads that only disturb.
+        let slower = points(|n| 1.0 / n);
+        assert_eq!(amdahl(&slower).map(|law| law.serial), Some(1.0));
+        let law = usl(&slower).expect("a law");
+        assert!(law.serial <= 1.0 && law.crosstalk > 0.9, "{law:?}");
     }
 
     #[test]
