@@ -4,6 +4,7 @@
 //! errors and progress to standard error. Exit status: 0 done and all checks held; 1 a check
 //! failed; 2 the request or its input was wrong, or the machine cannot meet it.
 
+mod child;
 mod commands;
 mod input;
 mod options;
@@ -12,7 +13,7 @@ mod picture;
 mod progress;
 
 use clap::{Parser, Subcommand};
-use commands::{check, compare, error, intersect, render, strategies};
+use commands::{check, compare, error, intersect, render, sample, strategies};
 use std::io::{self, Write};
 use std::process::ExitCode;
 
@@ -37,6 +38,9 @@ enum Command {
     Check(check::Arguments),
     /// Time the strategies side by side and print the table (the default)
     Compare(compare::Arguments),
+    /// One sample of a comparison
+    #[command(hide = true)]
+    Sample(sample::Arguments),
     /// Hold the speed of every setting against its error
     Error(error::Arguments),
     /// Send hard cases through the kernel that renders, results as JSON lines
@@ -57,6 +61,7 @@ fn main() -> ExitCode {
         Some(Command::Render(arguments)) => render::run(&arguments),
         Some(Command::Check(arguments)) => check::run(&arguments),
         Some(Command::Compare(arguments)) => compare::run(arguments.scene.as_deref(), &arguments.options),
+        Some(Command::Sample(arguments)) => sample::run(&arguments),
         Some(Command::Error(arguments)) => error::run(&arguments),
         Some(Command::Intersect(arguments)) => intersect::run(&arguments),
         None => compare::run(None, &cli.compare),

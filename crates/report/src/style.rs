@@ -1,15 +1,15 @@
 //! How tables look.
 
-use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
+use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Row, Table, TableStyle};
 use rayweave_measure::Interval;
 use std::ops::RangeInclusive;
 
 const STYLE: TableStyle = TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'));
 
 /// A table without a newline at the end; the columns `numbers` line up at their right.
-pub(crate) fn table<const N: usize>(
-    header: [&str; N],
-    rows: impl Iterator<Item = [String; N]>,
+pub(crate) fn table<R: Into<Row>>(
+    header: impl Into<Row>,
+    rows: impl Iterator<Item = R>,
     numbers: RangeInclusive<usize>,
 ) -> String {
     let mut table = Table::new();

@@ -5,4 +5,5 @@ pub mod compare;
 pub mod error;
 pub mod intersect;
 pub mod render;
+pub mod sample;
 pub mod strategies;
