@@ -203,7 +203,8 @@ pub fn timed(
 ) -> Result<Timed, String> {
     let work = setting.work(scene, size).map_err(|e| e.to_string())?;
     let mut stopwatch = Stopwatch::new(&*work, size.0, size.1, NonZeroU32::MAX).map_err(|e| e.to_string())?;
-    let Rendering { sample, digest } = stopwatch.render(&Entry { strategy, threads: NonZeroUsize::MIN })?;
+    let Rendering { sample, digest, .. } =
+        stopwatch.render(&Entry { strategy, threads: NonZeroUsize::MIN })?;
     Ok(Timed { picture: stopwatch.into_picture(), digest, nanoseconds: sample.render_ns })
 }
 

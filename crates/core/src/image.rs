@@ -7,6 +7,7 @@
 use sha2::{Digest as _, Sha256};
 use std::fmt;
 use std::num::NonZeroU32;
+use std::str::FromStr;
 use thiserror::Error;
 
 /// A linear RGB colour, not clamped.
@@ -204,6 +205,27 @@ impl fmt::Display for Digest {
         self.0.iter().try_for_each(|byte| write!(f, "{byte:02x}"))
     }
 }
+
+/// The 64 hexadecimal digits that a digest is displayed as.
+impl FromStr for Digest {
+    type Err = NotADigest;
+
+    fn from_str(text: &str) -> Result<Self, NotADigest> {
+        let mut bytes = [0; 32];
+        if text.len() != 2 * bytes.len() || !text.bytes().all(|digit| digit.is_ascii_hexdigit()) {
+            return Err(NotADigest);
+        }
+        for (byte, place) in bytes.iter_mut().zip((0..).step_by(2)) {
+            *byte = u8::from_str_radix(&text[place..place + 2], 16).map_err(|_| NotADigest)?;
+        }
+        Ok(Self(bytes))
+    }
+}
+
+/// A text that is no [`Digest`].
+#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+#[error("a digest has 64 hexadecimal digits")]
+pub struct NotADigest;
 
 impl fmt::Debug for Digest {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

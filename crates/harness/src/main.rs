@@ -4,6 +4,7 @@
 //! errors and progress to standard error. Exit status: 0 done and all checks held; 1 a check
 //! failed; 2 the request or its input was wrong, or the machine cannot meet it.
 
+mod child;
 mod commands;
 mod input;
 mod options;
@@ -12,7 +13,7 @@ mod picture;
 mod progress;
 
 use clap::{Parser, Subcommand};
-use commands::{check, compare, error, explain, intersect, overhead, predict, render, strategies};
+use commands::{check, compare, error, explain, intersect, overhead, predict, render, sample, strategies};
 use std::io::{self, Write};
 use std::process::ExitCode;
 
@@ -41,6 +42,9 @@ enum Command {
     Overhead(overhead::Arguments),
     /// Predict what more threads would make of a picture, and check it with those that are here
     Predict(predict::Arguments),
+    /// One sample of a comparison
+    #[command(hide = true)]
+    Sample(sample::Arguments),
     /// Hold the speed of every setting against its error
     Error(error::Arguments),
     /// Say why a strategy loses: where the time of its threads goes
@@ -65,6 +69,7 @@ fn main() -> ExitCode {
         Some(Command::Compare(arguments)) => compare::run(arguments.scene.as_deref(), &arguments.options),
         Some(Command::Overhead(arguments)) => overhead::run(&arguments),
         Some(Command::Predict(arguments)) => predict::run(&arguments),
+        Some(Command::Sample(arguments)) => sample::run(&arguments),
         Some(Command::Error(arguments)) => error::run(&arguments),
         Some(Command::Explain(arguments)) => explain::run(&arguments),
         Some(Command::Intersect(arguments)) => intersect::run(&arguments),

@@ -6,15 +6,19 @@ use rayweave_core::{Formulas, Lanes, Sampling, Search, Strategy};
 use rayweave_registry::STRATEGIES;
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::thread::available_parallelism;
+use std::time::Duration;
 
 /// The most threads that may be asked for.
 const MAX_THREADS: usize = 1024;
+
+/// The longest time limit that may be asked for: a week.
+const MAX_SECONDS: u64 = 7 * 24 * 3600;
 
 /// The most tiles a picture may be cut into: with what a tile takes, less than 1 GiB.
 const MAX_TILES: u64 = 1 << 24;
 
 /// What is rendered.
-#[derive(Args)]
+#[derive(Args, Clone, Copy)]
 pub struct SceneOptions {
     /// Size of the picture in pixels, each 1..=65535 [default: the scene's]
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
@@ -133,6 +137,30 @@ pub struct TileOption {
     /// Side of a tile in pixels, for the strategies that deal in tiles
     #[arg(long, value_name = "N", default_value = "32")]
     tile: NonZeroU32,
+}
+
+impl SceneOptions {
+    /// The words of a command line that has the same options.
+    pub fn words(&self) -> Vec<String> {
+        let size = self.size.map(|(width, height)| ("--size", format!("{width}x{height}")));
+        let antialiasing = self.antialiasing.map(|density| ("--antialiasing", density.to_string()));
+        let choices = [
+            ("--sampling", word(&self.sampling)),
+            ("--precision", word(&self.precision)),
+            ("--formulas", word(&self.formulas)),
+            ("--lanes", word(&self.lanes)),
+            ("--share-samples", word(&self.share_samples)),
+            ("--adaptive", word(&self.adaptive)),
+            ("--search", word(&self.search)),
+        ];
+        let options = size.into_iter().chain(antialiasing).chain(choices);
+        options.flat_map(|(name, value)| [name.to_owned(), value]).collect()
+    }
+}
+
+/// A choice as it is written on the command line.
+fn word(choice: &impl ValueEnum) -> String {
+    choice.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
 }
 
 impl From<FormulasOption> for Formulas {
@@ -270,6 +298,21 @@ pub fn parse_size(text: &str) -> Result<(u32, u32), String> {
     text.split_once('x')
         .and_then(|(width, height)| Some((side(width)?, side(height)?)))
         .ok_or_else(|| "expected WIDTHxHEIGHT, each an integer in 1..=65535, as in 640x480".to_owned())
+}
+
+/// A time of a second or more, for clap.
+pub fn parse_seconds(text: &str) -> Result<Duration, String> {
+    let seconds = text.parse().ok().filter(|seconds| (1..=MAX_SECONDS).contains(seconds));
+    seconds.map(Duration::from_secs).ok_or_else(|| format!("expected whole seconds in 1..={MAX_SECONDS}"))
+}
+
+/// A share in percent, with or without the sign, for clap.
+pub fn parse_percent(text: &str) -> Result<f64, String> {
+    let number = text.strip_suffix('%').unwrap_or(text).trim_end();
+    let percent = number.parse().ok().filter(|percent| (0.001..=100.0).contains(percent));
+    percent
+        .map(|percent: f64| percent / 100.0)
+        .ok_or_else(|| "expected a percentage in 0.001..=100, as in 1%".to_owned())
 }
 
 /// A peak signal-to-noise ratio, for clap.

@@ -37,25 +37,29 @@ fn commands(document: &str) -> Vec<String> {
     commands
 }
 
-/// Small pictures do: what is tested is that the command is understood and succeeds.
+/// Small pictures and short times do: what is tested is that the command is understood and succeeds.
 fn small(arguments: &str) -> String {
     let takes_size = ["render", "check", "compare", "error", "explain", "predict", "-"]
         .iter()
         .any(|word| arguments.starts_with(word));
     if arguments.starts_with("error") {
         // Each of its pictures takes thousands of rays a pixel.
-        format!("{} --size 4x3", arguments.replace("--size 60x60", ""))
-    } else if takes_size && !arguments.contains("--size") {
-        format!("{arguments} --size 24x18")
-    } else {
-        arguments.to_owned()
+        return format!("{} --size 4x3", arguments.replace("--size 60x60", ""));
     }
+    let mut small = arguments.to_owned();
+    if takes_size && !small.contains("--size") {
+        small += " --size 24x18";
+    }
+    if ["compare", "-"].iter().any(|word| arguments.starts_with(word)) {
+        small += " --time-limit 1";
+    }
+    small
 }
 
 #[test]
 fn the_documents_commands_work() {
     let folder = TempDir::new().expect("a temporary folder");
-    for scenes in ["scenes", "scenes/hard"] {
+    for scenes in ["scenes", "scenes/hard", "scenes/loads"] {
         fs::create_dir(folder.path().join(scenes)).expect("a folder");
         let entries =
             fs::read_dir(repository().join(scenes)).expect("the scenes").map(|e| e.expect("an entry"));

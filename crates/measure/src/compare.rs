@@ -14,15 +14,21 @@
 //! The protocol has an [`Executor`] do the rendering and the timing, so its logic is tested without
 //! either; [`Stopwatch`](crate::stopwatch::Stopwatch) is the real one.
 
+#[cfg(test)]
+mod noise_tests;
+mod row;
+#[cfg(test)]
+mod tests;
+
+pub use row::{Figures, OneShot, Role, Row};
+
 use crate::schedule::Protocol;
-use crate::statistics::{Interval, efficiency, karp_flatt, median, ratio_interval};
-use rayweave_core::{Digest, Strategy, ThreadsStart};
+use crate::statistics::{Interval, ratio_interval};
+use rayweave_core::{Digest, Strategy};
+use row::with_figures;
 use std::num::NonZeroUsize;
 use std::time::Duration;
 use thiserror::Error;
-
-#[cfg(test)]
-mod tests;
 
 /// A strategy with a number of threads to be measured.
 #[derive(Clone, Copy)]
@@ -62,15 +68,22 @@ pub struct Rendering {
     pub sample: Sample,
     /// Of the picture.
     pub digest: Digest,
+    /// Of the picture of the [one shot](Sample::one_shot_ns), where there was one.
+    pub first_digest: Option<Digest>,
 }
 
 /// The times of one rendering.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Sample {
     /// To prepare the strategy, in nanoseconds.
     pub prepare_ns: u64,
     /// To render, in nanoseconds.
     pub render_ns: u64,
+    /// To prepare the strategy and render for the first time in a fresh process, in nanoseconds; the other times are
+    /// then of a second rendering. `None` where the process is not fresh.
+    pub one_shot_ns: Option<u64>,
+    /// CPU time of all threads together while rendering, in nanoseconds, where the system tells.
+    pub cpu_ns: Option<u64>,
 }
 
 /// The primary rays of one rendering.
@@ -107,57 +120,8 @@ pub struct Comparison {
     pub rounds: usize,
     /// The protocol's seed, of the order within the rounds.
     pub seed: u64,
-}
-
-/// What a row is there for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Role {
-    /// What every other row is compared with.
-    Reference,
-    /// The reference once more.
-    Control,
-    /// One of the entries.
-    Contender,
-}
-
-/// A strategy with a number of threads, measured.
-#[derive(Clone, Debug)]
-pub struct Row {
-    /// The strategy's name.
-    pub strategy: &'static str,
-    /// The number of computing threads.
-    pub threads: usize,
-    /// What it is there for.
-    pub role: Role,
-    /// Which figure contains the start of the threads.
-    pub threads_start: ThreadsStart,
-    /// Whether there is a picture, and every picture was the reference's.
-    pub identical: bool,
-    /// Of the first picture that was not the reference's, or else of all of them; `None` without any.
-    pub digest: Option<Digest>,
-    /// Why the strategy failed.
-    pub error: Option<String>,
-    /// Traced in the warm-up; `None` where nobody counted, or the picture was wrong.
-    pub rays: Option<Rays>,
-    /// Of the verified renderings, one a round, from the first round on.
-    pub samples: Vec<Sample>,
-    /// `None` for a row that failed or gave a wrong picture, and for all if the reference did.
-    pub figures: Option<Figures>,
-}
-
-/// What the samples of a row come to.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Figures {
-    /// Median time to render, in nanoseconds.
-    pub median_ns: f64,
-    /// Median time to prepare, in nanoseconds.
-    pub prepare_ns: f64,
-    /// Time of the reference over the row's own, within a round.
-    pub speedup: Interval,
-    /// The median speed-up per thread: 1 is perfect.
-    pub efficiency: f64,
-    /// After Karp and Flatt, from the median speed-up; `None` for one thread.
-    pub serial_fraction: Option<f64>,
+    /// The protocol's [goal](Protocol::goal).
+    pub goal: Option<f64>,
 }
 
 /// Why nothing could be compared.
@@ -175,6 +139,15 @@ impl Comparison {
         self.rows.iter().all(Row::holds)
     }
 
+    /// How many rows with figures miss the goal.
+    #[must_use]
+    pub fn imprecise_rows(&self) -> usize {
+        let intervals = self.rows.iter().filter_map(|row| Some(row.figures?.speedup));
+        let misses =
+            |interval: &Interval| self.goal.is_some_and(|goal| interval.relative_half_width() > goal);
+        intervals.filter(misses).count()
+    }
+
     /// What the reference seems to gain on itself: the error of the table.
     #[must_use]
     pub fn control(&self) -> Option<Interval> {
@@ -190,80 +163,6 @@ impl Comparison {
             comparison.rows.first().filter(|row| row.figures.is_some()).map(Row::render_ns)
         };
         ratio_interval(&times(other)?, &times(self)?)
-    }
-}
-
-impl Row {
-    /// Whether it gave the reference's picture, every time.
-    #[must_use]
-    pub fn holds(&self) -> bool {
-        self.identical && self.error.is_none()
-    }
-
-    fn new(entry: &Entry<'_>, role: Role) -> Self {
-        let threads_start = entry.strategy.threads_start();
-        let threads = if threads_start == ThreadsStart::Never { 1 } else { entry.threads.get() };
-        Self {
-            strategy: entry.strategy.name(),
-            threads,
-            role,
-            threads_start,
-            // Until the warm-up has shown otherwise.
-            identical: true,
-            digest: None,
-            error: None,
-            rays: None,
-            samples: Vec::new(),
-            figures: None,
-        }
-    }
-
-    /// Takes note of a rendering that is no sample.
-    fn warm_up(&mut self, result: Result<(Rendering, Option<Rays>), String>, expected: Digest) {
-        let rays = result.as_ref().ok().and_then(|(_, rays)| *rays);
-        let sample = self.verify(result.map(|(rendering, _)| rendering), expected);
-        self.rays = rays.filter(|_| sample.is_some());
-    }
-
-    /// Takes note of a rendering that is a sample if its picture is right.
-    fn measure(&mut self, result: Result<Rendering, String>, expected: Digest) {
-        let sample = self.verify(result, expected);
-        self.samples.extend(sample);
-    }
-
-    /// Takes note of a rendering's picture, and gives its times if they may be used.
-    fn verify(&mut self, result: Result<Rendering, String>, expected: Digest) -> Option<Sample> {
-        match result {
-            Ok(Rendering { sample, digest }) => {
-                self.digest = Some(digest);
-                self.identical = digest == expected;
-                self.identical.then_some(sample)
-            }
-            Err(error) => {
-                self.error = Some(error);
-                self.identical = self.digest.is_some();
-                None
-            }
-        }
-    }
-
-    /// The times to render.
-    fn render_ns(&self) -> Vec<u64> {
-        self.samples.iter().map(|sample| sample.render_ns).collect()
-    }
-
-    /// From the times of the reference in the same rounds.
-    fn figures(&self, reference_ns: &[u64]) -> Option<Figures> {
-        let median_of =
-            |of: fn(&Sample) -> u64| median(&self.samples.iter().map(|s| of(s) as f64).collect::<Vec<_>>());
-        let speedup = ratio_interval(reference_ns, &self.render_ns())?;
-        Some(Figures {
-            median_ns: median_of(|sample| sample.render_ns)?,
-            prepare_ns: median_of(|sample| sample.prepare_ns)?,
-            speedup,
-            efficiency: efficiency(speedup.median, self.threads),
-            serial_fraction: karp_flatt(speedup.median, self.threads),
-        })
     }
 }
 
@@ -309,6 +208,7 @@ impl Protocol {
         let mut tables: Vec<Vec<Row>> = executors.iter().map(|_| new_rows()).collect();
         let mut schedule = self.schedule(tables.len() * entries.len());
         let mut running = vec![true; tables.len()];
+        let mut next_look = self.min_rounds.max(1);
         while let Some(turn) = schedule.next(executors[0].elapsed()) {
             // Without its reference a round says nothing.
             if turn.first {
@@ -316,6 +216,13 @@ impl Protocol {
             }
             if !running.contains(&true) {
                 break;
+            }
+            // Not after each round: the more often one looks, the likelier an interval is narrow by chance.
+            if let Some(rounds) = turn.round.filter(|&rounds| turn.first && rounds >= next_look) {
+                if self.is_precise(&tables) {
+                    break;
+                }
+                next_look = rounds + rounds.div_ceil(8);
             }
             let (table, entry) = (turn.entry / entries.len(), turn.entry % entries.len());
             let (row, entry) = (&mut tables[table][entry], &entries[entry]);
@@ -334,18 +241,14 @@ impl Protocol {
             }
         }
 
-        let (rounds, seed) = (schedule.rounds(), self.seed);
-        let comparison = |rows| Comparison { rows: with_figures(rows), digest, rounds, seed };
+        let (rounds, seed, goal) = (schedule.rounds(), self.seed, self.goal);
+        let comparison = |rows| Comparison { rows: with_figures(rows), digest, rounds, seed, goal };
         Ok(tables.into_iter().map(comparison).collect())
     }
-}
 
-fn with_figures(mut rows: Vec<Row>) -> Vec<Row> {
-    if rows[0].holds() {
-        let reference = rows[0].render_ns();
-        for row in rows.iter_mut().filter(|row| row.holds()) {
-            row.figures = row.figures(&reference);
-        }
+    /// Whether every row that will have figures is as precise as was wished for.
+    fn is_precise(&self, tables: &[Vec<Row>]) -> bool {
+        let precise = |rows: &Vec<Row>, goal| rows.iter().all(|row| row.is_precise(&rows[0], goal));
+        self.goal.is_some_and(|goal| tables.iter().all(|rows| precise(rows, goal)))
     }
-    rows
 }

@@ -7,7 +7,8 @@
 //! * [`forecast`]: what more threads would make of a picture, beside what those here make of it;
 //! * [`explanation`]: what becomes of the efficiency that a strategy loses, by an account of every thread's time
 //!   ([`efficiency`]);
-//! * [`machine`]: what was measured on, and with what.
+//! * [`machine`]: what was measured on, and with what;
+//! * [`noise`]: what else went on at the time.
 //!
 //! What watches a rendering is a [`Work`](rayweave_core::Work) around a `Work` ([`recorder`],
 //! [`timeline`]) or in place of it ([`computing_threads`]): no strategy has a line for any of it.
@@ -22,7 +23,9 @@ pub mod explanation;
 pub mod finding;
 pub mod forecast;
 pub mod independent;
+pub mod load;
 pub mod machine;
+pub mod noise;
 pub mod overhead;
 pub mod piece_costs;
 mod poison;
@@ -34,12 +37,15 @@ pub mod statistics;
 pub mod stopwatch;
 pub mod synthetic;
 pub mod timeline;
+pub mod usage;
 
 pub use check::{Case, Check, Verdict};
 pub use compare::{Comparison, Entry, Row};
 pub use finding::{Fault, Finding};
 pub use forecast::Forecast;
+pub use load::Load;
 pub use machine::Machine;
+pub use noise::Noise;
 pub use schedule::Protocol;
 pub use statistics::Interval;
 pub use stopwatch::Stopwatch;

@@ -70,19 +70,22 @@ fn logical_cores(cpuinfo: &str) -> Option<usize> {
 
 /// The tightest limit of the control groups that this process is in, in cores.
 fn quota() -> Option<f64> {
-    let groups = fs::read_to_string("/proc/self/cgroup").ok()?;
-    let groups = groups.lines().filter_map(cpu_group);
-    let limits = groups.flat_map(|(version, folder)| {
-        // The groups around a group bind it too.
-        let inside = |folder: &&Path| folder.starts_with(GROUPS);
-        folder.ancestors().take_while(inside).filter_map(|folder| limit(version, folder)).collect::<Vec<_>>()
-    });
-    limits.min_by(f64::total_cmp)
+    cpu_groups().iter().filter_map(|(version, folder)| limit(*version, folder)).min_by(f64::total_cmp)
+}
+
+/// The folders of the control groups that bind this process: its own, and those around it.
+pub(crate) fn cpu_groups() -> Vec<(Version, PathBuf)> {
+    let groups = fs::read_to_string("/proc/self/cgroup").unwrap_or_default();
+    let inside = |folder: &&Path| folder.starts_with(GROUPS);
+    let around = |(version, folder): (Version, PathBuf)| -> Vec<(Version, PathBuf)> {
+        folder.ancestors().take_while(inside).map(|folder| (version, folder.to_owned())).collect()
+    };
+    groups.lines().filter_map(cpu_group).flat_map(around).collect()
 }
 
 /// The two forms of control groups.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Version {
+pub(crate) enum Version {
     /// One hierarchy for each controller.
     V1,
     /// One hierarchy for all.

@@ -4,6 +4,7 @@ use crate::attempt::attempt;
 use crate::compare::{Entry, Executor, Rays, Rendering, Sample};
 use crate::poison;
 use crate::recorder::{Cost, Tally};
+use crate::usage::Usage;
 use rayweave_core::image::ImageError;
 use rayweave_core::{Area, Image, Plan, Work};
 use std::num::NonZeroU32;
@@ -57,7 +58,36 @@ impl<'a> Stopwatch<'a> {
         let result = attempt(|| renderer.render(work, &mut self.image));
         let render_ns = nanoseconds(begin.elapsed());
         result?;
-        Ok(Rendering { sample: Sample { prepare_ns, render_ns }, digest: self.image.digest() })
+        let sample = Sample { prepare_ns, render_ns, ..Sample::default() };
+        Ok(Rendering { sample, digest: self.image.digest(), first_digest: None })
+    }
+
+    /// Prepares `entry` and renders twice with it: once to find out what a single picture takes, once as it is when
+    /// everything is warm. A fresh process has to call it, once, or the first is no [one shot](Sample::one_shot_ns).
+    ///
+    /// # Errors
+    ///
+    /// What the strategy says of its failure.
+    pub fn one_shot_and_again(&mut self, entry: &Entry<'_>) -> Result<Rendering, String> {
+        let plan = Plan { threads: entry.threads, tile: self.tile };
+        poison::fill(&mut self.image);
+        let begin = Instant::now();
+        let mut renderer = attempt(|| entry.strategy.prepare(plan))?;
+        let prepare_ns = nanoseconds(begin.elapsed());
+        attempt(|| renderer.render(self.work, &mut self.image))?;
+        let one_shot_ns = Some(nanoseconds(begin.elapsed()));
+        let first_digest = Some(self.image.digest());
+
+        poison::fill(&mut self.image);
+        let before = Usage::of_this_process();
+        let begin = Instant::now();
+        let result = attempt(|| renderer.render(self.work, &mut self.image));
+        let render_ns = nanoseconds(begin.elapsed());
+        let after = Usage::of_this_process();
+        result?;
+        let cpu_ns = after.zip(before).map(|(after, before)| nanoseconds(after.since(before).cpu));
+        let sample = Sample { prepare_ns, render_ns, one_shot_ns, cpu_ns };
+        Ok(Rendering { sample, digest: self.image.digest(), first_digest })
     }
 }
 
@@ -201,6 +231,26 @@ mod tests {
 
         let mut stopwatch = Stopwatch::new(&Grey, 5, 4, plan).expect("a picture");
         assert_eq!(stopwatch.warm_up(&entry).map(|(_, counted)| counted), Ok(None));
+    }
+
+    /// Catches a first picture that passes for the second, and spans that are taken at the wrong places.
+    #[test]
+    fn a_one_shot_is_prepared_and_rendered_and_then_rendered_again() {
+        let entry = Entry { strategy: &ByTwos, threads: NonZeroUsize::MIN };
+        let mut stopwatch = Stopwatch::new(&Grey, 3, 2, NonZeroU32::MIN).expect("a picture");
+        let Rendering { sample, digest, first_digest } =
+            stopwatch.one_shot_and_again(&entry).expect("rendered");
+        assert_eq!(first_digest, Some(digest));
+        assert!(sample.one_shot_ns.expect("a first one") > sample.prepare_ns);
+        assert_eq!(sample.cpu_ns.is_some(), cfg!(unix));
+
+        let tires = Tires::default();
+        let entry = Entry { strategy: &tires, threads: NonZeroUsize::MIN };
+        let Rendering { digest, first_digest, .. } = stopwatch.one_shot_and_again(&entry).expect("rendered");
+        assert_eq!((first_digest, tires.prepared.load(Ordering::Relaxed)), (Some(digest), 1));
+        let Rendering { digest: again, first_digest, .. } =
+            stopwatch.one_shot_and_again(&entry).expect("nothing");
+        assert!(again != digest && first_digest == Some(again), "an earlier picture");
     }
 
     #[test]

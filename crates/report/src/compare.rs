@@ -1,15 +1,21 @@
-//! A comparison as table, JSON and CSV.
+//! A comparison as table, JSON, CSV and Markdown, and what has changed since an earlier one.
 
+mod baseline;
 mod csv;
 mod json;
+mod markdown;
+mod noise;
+mod scenes;
 mod table;
 #[cfg(test)]
 mod tests;
 
+pub use baseline::Baseline;
+pub use scenes::ScenesReport;
 pub(crate) use table::complaint;
 
 use rayweave_core::{Formulas, Sampling, Search, ThreadsStart};
-use rayweave_measure::{Comparison, Interval, Machine, Row};
+use rayweave_measure::{Comparison, Interval, Machine, Noise, Row};
 
 /// What was rendered, and how.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -49,6 +55,10 @@ pub struct Report<'a> {
     pub comparison: &'a Comparison,
     /// What it was measured on.
     pub machine: &'a Machine,
+    /// What else went on there.
+    pub noise: &'a Noise,
+    /// An earlier comparison, to say what has changed.
+    pub baseline: Option<&'a Baseline>,
 }
 
 impl Report<'_> {
@@ -59,20 +69,17 @@ impl Report<'_> {
         table::text(self)
     }
 
-    /// For programs: an object of schema 1. More keys may come, these stay:
-    ///
-    /// * `schema`, `scene`, `width`, `height`, `machine`, `results`;
-    /// * of each result `strategy`, `threads`, `identical`, `digest`, `median_ns`, `samples_ns` and
-    ///   `speedup` with `median`, `low` and `high`.
-    ///
-    /// Where a row has no figures, because it failed or gave a wrong picture, they are null.
-    ///
-    /// Of how the picture was computed `lanes`, `share_samples` and `search` tell; of each result `primary_rays`
-    /// those that were traced, and `redundant_rays` how many of them a single tile would have done without. These two
-    /// are null for adaptive samples, which are not counted.
+    /// For programs: an object of schema 1, which docs/compare-json.md describes. More keys may come, those there
+    /// stay.
     #[must_use]
     pub fn json(&self) -> String {
         json::text(self)
+    }
+
+    /// For a README: the table in Markdown, with what was measured on.
+    #[must_use]
+    pub fn markdown(&self) -> String {
+        markdown::text(self)
     }
 
     /// For spreadsheets: a line of names, then one line a result; empty where there is no figure.
@@ -106,6 +113,12 @@ impl BothReport<'_> {
     #[must_use]
     pub fn json(&self) -> String {
         json::both(self)
+    }
+
+    /// Both tables of [`Report::markdown`].
+    #[must_use]
+    pub fn markdown(&self) -> String {
+        format!("{}\n{}", self.shared.markdown(), self.unshared.markdown())
     }
 
     /// The lines of [`Report::csv`] with samples shared, then those without: `share_samples` tells them apart.

@@ -1,22 +1,21 @@
 //! How tables look.
 
-use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Table, TableStyle};
+use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Row, Table, TableStyle};
 use rayweave_measure::Interval;
 use std::ops::RangeInclusive;
 
 const STYLE: TableStyle = TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'));
 
 /// A table without a newline at the end; the columns `numbers` line up at their right.
-pub(crate) fn table<H: ToString, R: IntoIterator<Item = String>>(
-    header: impl IntoIterator<Item = H>,
+pub(crate) fn table<R: Into<Row>>(
+    header: impl Into<Row>,
     rows: impl Iterator<Item = R>,
     numbers: RangeInclusive<usize>,
 ) -> String {
     let mut table = Table::new();
     // Neither colours nor a wrapping that depends on the window: a result reads the same everywhere.
     table.force_no_tty().load_style(STYLE).set_content_arrangement(ContentArrangement::Disabled);
-    table.set_header(header.into_iter().map(|name| name.to_string()));
-    table.add_rows(rows.map(|row| row.into_iter().collect::<Vec<_>>()));
+    table.set_header(header).add_rows(rows);
     for (index, column) in table.column_iter_mut().enumerate() {
         column.set_padding((0, 1));
         if numbers.contains(&index) {

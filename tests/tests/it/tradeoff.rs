@@ -16,7 +16,7 @@ fn render(work: &dyn Work) -> Result<Image, String> {
 
 /// Of one round: nothing here is about time.
 fn study(scene: &Scene) -> Study {
-    let protocol = Protocol { min_rounds: 1, max_rounds: 1, budget: Duration::ZERO, seed: 1 };
+    let protocol = Protocol { min_rounds: 1, max_rounds: 1, budget: Duration::ZERO, goal: None, seed: 1 };
     let strategy = rayweave_registry::reference();
     Experiment { scene, size: SIZE, strategy, protocol }.run(render, |_| ()).expect("a study")
 }

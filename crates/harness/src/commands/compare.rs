@@ -1,21 +1,25 @@
 //! `rayweave compare`, and `rayweave` alone: the table.
 
+use crate::child::Children;
 use crate::input::Input;
 use crate::options::{
-    SceneOptions, SharingOption, TileOption, all_threads, chosen, distinct, left_out_line, parse_strategy,
-    parse_threads,
+    SceneOptions, SharingOption, TileOption, all_threads, chosen, distinct, left_out_line, parse_percent,
+    parse_seconds, parse_strategy, parse_threads,
 };
 use crate::output::{PendingFile, distinct_files};
 use crate::{Outcome, print, progress};
 use clap::Args;
-use rayweave_core::{Area, Arithmetic, Execution, Strategy, Work, primary_rays};
-use rayweave_measure::Protocol;
+use rayweave_core::{Arithmetic, Execution, Strategy};
 use rayweave_measure::compare::{Comparison, Entry, Executor};
 use rayweave_measure::machine::Machine;
-use rayweave_measure::stopwatch::Stopwatch;
-use rayweave_report::compare::{BothReport, Report, Subject};
+use rayweave_measure::noise::{Noise, Watch};
+use rayweave_measure::{Load, Protocol};
+use rayweave_report::compare::{Baseline, BothReport, Report, ScenesReport, Subject};
+use std::fs;
+use std::io;
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 #[derive(Args)]
 pub struct Arguments {
@@ -35,26 +39,172 @@ pub struct Options {
     threads: Vec<NonZeroUsize>,
     #[command(flatten)]
     tile: TileOption,
+    /// Measure until each speed-up is known so well: half of its interval, as a share of it; or until time is up
+    #[arg(long, value_name = "PERCENT", value_parser = parse_percent)]
+    precision_goal: Option<f64>,
+    /// Begin no round after 8 that would end later than this; without this option 40 rounds are enough, or
+    /// two and a half minutes
+    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
+    time_limit: Option<Duration>,
     /// Write the result as JSON, raw samples included
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
     /// Write the table as CSV
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
+    /// Compare on several scenes beside each other: scene files, or `all` for those in scenes/loads, which
+    /// separate the strategies. The time limit is for all together
+    #[arg(long, value_name = "FILE", value_delimiter = ',')]
+    scenes: Vec<PathBuf>,
+    /// Write the table as Markdown
+    #[arg(long, value_name = "FILE")]
+    markdown: Option<PathBuf>,
+    /// Say what has changed since an earlier run, by the JSON that it wrote
+    #[arg(long, value_name = "FILE")]
+    baseline: Option<PathBuf>,
     #[command(flatten)]
     scene_options: SceneOptions,
 }
 
+/// Where `--scenes all` finds its scenes: each of them separates some strategies from others.
+const LOADS: &str = "scenes/loads";
+
 pub fn run(scene: Option<&Path>, options: &Options) -> Result<Outcome, String> {
-    distinct_files(&[&scene.map(Path::to_owned), &options.json, &options.csv])?;
-    let json = options.json.as_deref().map(PendingFile::create).transpose()?;
-    let csv = options.csv.as_deref().map(PendingFile::create).transpose()?;
-    let sharing = options.scene_options.share_samples;
-    let ways: &[bool] = match sharing {
+    let scenes = scenes(scene, options)?;
+    let single = options.scenes.is_empty() && options.scene_options.share_samples.single().is_ok();
+    if options.baseline.is_some() && !single {
+        return Err("--baseline needs one table: a single scene, and --share-samples on or off".to_owned());
+    }
+    let files = Files::create(scene, options)?;
+    let baseline = options.baseline.as_deref().map(read_baseline).transpose()?;
+    // All of them before the first is measured: a mistake in the last is told at once.
+    let inputs = scenes.iter().map(|scene| load(scene.as_deref(), options));
+    let inputs = inputs.collect::<Result<Vec<Input>, _>>()?;
+    let measured = scenes.iter().zip(inputs);
+    let measured = measured.map(|(scene, input)| measure(scene.as_deref(), input, options, scenes.len()));
+    let measured = measured.collect::<Result<Vec<Measured>, _>>()?;
+    let machine = Machine::here();
+    let first = &measured[0];
+    let skipped = first.input.skipped_line().map(|line| line + "\n").unwrap_or_default();
+    let left_out = left_out_line(&options.strategy);
+    let below = format!("\n{}\n{skipped}{left_out}", first.input.arithmetic_line());
+    if !options.scenes.is_empty() {
+        let reports: Vec<Report<'_>> =
+            measured.iter().map(|measured| measured.report(0, &machine, None)).collect();
+        let loads = measured.iter().map(|measured| measured.load(options)).collect::<Result<Vec<_>, _>>()?;
+        let all = ScenesReport { reports: &reports, loads: &loads };
+        print(&format!("{}\n{left_out}", all.table()))?;
+        files.finish(&all.json(), &all.csv(), &all.markdown())?;
+    } else if first.comparisons.len() == 2 {
+        let both =
+            BothReport { shared: first.report(0, &machine, None), unshared: first.report(1, &machine, None) };
+        print(&format!("{}{below}", both.table()))?;
+        files.finish(&both.json(), &both.csv(), &both.markdown())?;
+    } else {
+        let report = first.report(0, &machine, baseline.as_ref());
+        print(&format!("{}{below}", report.table()))?;
+        files.finish(&report.json(), &report.csv(), &report.markdown())?;
+    }
+    let hold = measured.iter().flat_map(|measured| &measured.comparisons).all(Comparison::holds);
+    Ok(if hold { Outcome::Held } else { Outcome::Failed })
+}
+
+/// The scenes to compare on; `None` is the report's.
+fn scenes(scene: Option<&Path>, options: &Options) -> Result<Vec<Option<PathBuf>>, String> {
+    match &options.scenes[..] {
+        [] => Ok(vec![scene.map(Path::to_owned)]),
+        _ if options.scene_options.share_samples.single().is_err() => {
+            Err("--scenes: choose --share-samples on or off".to_owned())
+        }
+        _ if scene.is_some() => Err("--scenes: name all scenes there, and none besides".to_owned()),
+        [all] if all.as_os_str() == "all" => {
+            let cannot = |e: io::Error| {
+                format!(
+                    "--scenes all: {LOADS} cannot be read: {e}; go to the repository's folder, or name files"
+                )
+            };
+            let entries = fs::read_dir(LOADS).map_err(cannot)?;
+            let mut files: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+            files.retain(|file| file.extension().is_some_and(|extension| extension == "toml"));
+            files.sort();
+            if files.is_empty() {
+                return Err(format!("--scenes all: there is no scene in {LOADS}"));
+            }
+            Ok(files.into_iter().map(Some).collect())
+        }
+        files => Ok(files.iter().cloned().map(Some).collect()),
+    }
+}
+
+/// The files that were asked for.
+struct Files {
+    json: Option<PendingFile>,
+    csv: Option<PendingFile>,
+    markdown: Option<PendingFile>,
+}
+
+impl Files {
+    fn create(scene: Option<&Path>, options: &Options) -> Result<Self, String> {
+        let Options { json, csv, markdown, baseline, scenes, .. } = options;
+        let scenes: Vec<Option<PathBuf>> = scenes.iter().cloned().map(Some).collect();
+        let scene = scene.map(Path::to_owned);
+        let named = [&scene, json, csv, markdown, baseline].into_iter().chain(&scenes);
+        distinct_files(&named.collect::<Vec<_>>())?;
+        let create = |path: &Option<PathBuf>| path.as_deref().map(PendingFile::create).transpose();
+        Ok(Self { json: create(json)?, csv: create(csv)?, markdown: create(markdown)? })
+    }
+
+    fn finish(self, json: &str, csv: &str, markdown: &str) -> Result<(), String> {
+        let contents = [(self.json, json), (self.csv, csv), (self.markdown, markdown)];
+        contents
+            .into_iter()
+            .try_for_each(|(file, text)| file.map_or(Ok(()), |file| file.finish(text.as_bytes())))
+    }
+}
+
+fn read_baseline(path: &Path) -> Result<Baseline, String> {
+    let cannot = |reason: String| format!("{}: cannot be a baseline: {reason}", path.display());
+    let text = fs::read_to_string(path).map_err(|e| cannot(e.to_string()))?;
+    Baseline::parse(&text).map_err(cannot)
+}
+
+/// A scene, and a comparison for each way to compute its picture, measured in the same rounds.
+struct Measured {
+    input: Input,
+    subjects: Vec<Subject>,
+    comparisons: Vec<Comparison>,
+    noise: Noise,
+}
+
+impl Measured {
+    fn report<'a>(&'a self, way: usize, machine: &'a Machine, baseline: Option<&'a Baseline>) -> Report<'a> {
+        let (subject, comparison) = (&self.subjects[way], &self.comparisons[way]);
+        Report { subject, comparison, machine, noise: &self.noise, baseline }
+    }
+
+    /// How the cost lies in the picture.
+    fn load(&self, options: &Options) -> Result<Load, String> {
+        let (width, height) = (self.input.width, self.input.height);
+        let (work, tile) = (self.input.work(width, height)?, options.tile.of(width, height)?);
+        Load::of(&*work, width, height, tile).map_err(|e| e.to_string())
+    }
+}
+
+/// Steps of the progress bar.
+const STEPS: f64 = 1000.0;
+
+/// Whether samples are shared, for each way to compute the picture.
+fn ways(options: &Options) -> &'static [bool] {
+    match options.scene_options.share_samples {
         SharingOption::On => &[true],
         SharingOption::Off => &[false],
         SharingOption::Both => &[true, false],
-    };
+    }
+}
+
+/// A scene that can be measured as the options say.
+fn load(scene: Option<&Path>, options: &Options) -> Result<Input, String> {
+    let ways = ways(options);
     let input = Input::load_sharing(scene, &options.scene_options, ways[0])?;
     let settings = &input.scene.render;
     if ways.len() > 1 && (!settings.has_lattice() || settings.adaptive) {
@@ -62,35 +212,61 @@ pub fn run(scene: Option<&Path>, options: &Options) -> Result<Outcome, String> {
             "--share-samples both: without a lattice, or with an adaptive one, there is no choice".to_owned()
         );
     }
-    let tile = options.tile.of(input.width, input.height)?;
-    let ways: Vec<Execution> =
-        ways.iter().map(|&share_samples| Execution { share_samples, ..input.execution }).collect();
-    let comparisons = measure(&input, &ways, tile, options)?;
-    let subjects: Vec<Subject> = ways.iter().map(|&way| subject(&input, way, tile)).collect();
-    let machine = Machine::here();
-    let reports: Vec<Report<'_>> = subjects
-        .iter()
-        .zip(&comparisons)
-        .map(|(subject, comparison)| Report { subject, comparison, machine: &machine })
-        .collect();
-    let [table, json_text, csv_text] = match reports[..] {
-        [shared, unshared] => {
-            let both = BothReport { shared, unshared };
-            [both.table(), both.json(), both.csv()]
-        }
-        _ => [reports[0].table(), reports[0].json(), reports[0].csv()],
-    };
-    let skipped = input.skipped_line().map(|line| line + "\n").unwrap_or_default();
-    let left_out = left_out_line(&options.strategy);
-    print(&format!("{table}\n{}\n{skipped}{left_out}", input.arithmetic_line()))?;
-    json.map_or(Ok(()), |file| file.finish(json_text.as_bytes()))?;
-    csv.map_or(Ok(()), |file| file.finish(csv_text.as_bytes()))?;
-    Ok(if comparisons.iter().all(Comparison::holds) { Outcome::Held } else { Outcome::Failed })
+    input.picture()?;
+    options.tile.of(input.width, input.height)?;
+    Ok(input)
 }
 
-fn subject(input: &Input, execution: Execution, tile: NonZeroU32) -> Subject {
-    let Execution { arithmetic: Arithmetic { formulas, precision }, lanes, share_samples, search } =
-        execution;
+/// Measures on one of `scenes` scenes.
+fn measure(scene: Option<&Path>, input: Input, options: &Options, scenes: usize) -> Result<Measured, String> {
+    let ways = ways(options);
+    let tile = options.tile.of(input.width, input.height)?;
+    let children = ways.iter().map(|&way| Children::new(scene, &options.scene_options, way, tile));
+    let mut children = children.collect::<Result<Vec<Children>, _>>()?;
+    let mut executors: Vec<&mut dyn Executor> =
+        children.iter_mut().map(|children| children as &mut dyn Executor).collect();
+
+    let bar = progress::bar(STEPS as u64);
+    let watch = Watch::start();
+    let reference = rayweave_registry::reference();
+    let protocol = protocol(options, ways.len(), scenes);
+    let comparisons = protocol.run_together(reference, &entries(options), &mut executors, |progress| {
+        // Drawn here and nowhere else: between the timed spans.
+        bar.set_message(format!("{}, threads: {}", progress.strategy, progress.threads));
+        bar.set_position((progress.fraction * STEPS) as u64);
+    });
+    let noise = watch.finish(Machine::here().logical_cores);
+    bar.finish_and_clear();
+    let comparisons = comparisons.map_err(|e| e.to_string())?;
+    let subjects = ways.iter().map(|&share_samples| subject(&input, share_samples, tile)).collect();
+    Ok(Measured { input, subjects, comparisons, noise })
+}
+
+/// What is compared with the reference.
+fn entries(options: &Options) -> Vec<Entry<'static>> {
+    let strategies = chosen(&options.strategy);
+    let threads =
+        if options.threads.is_empty() { vec![all_threads()] } else { distinct(&options.threads, |n| *n) };
+    let pairs = strategies.iter().flat_map(|&strategy| threads.iter().map(move |&n| (strategy, n)));
+    pairs.map(|(strategy, threads)| Entry { strategy, threads }).collect()
+}
+
+/// How long to measure `ways` ways to compute the picture of one of `scenes` scenes.
+fn protocol(options: &Options, ways: usize, scenes: usize) -> Protocol {
+    let default = Protocol::default();
+    // Who says when it is enough wants no other end.
+    let asked = options.time_limit.is_some() || options.precision_goal.is_some();
+    Protocol {
+        max_rounds: if asked { usize::MAX } else { default.max_rounds },
+        // Each way gets the time that it would have had alone.
+        budget: options.time_limit.unwrap_or(default.budget * ways as u32) / scenes as u32,
+        goal: options.precision_goal,
+        ..default
+    }
+}
+
+fn subject(input: &Input, share_samples: bool, tile: NonZeroU32) -> Subject {
+    let Execution { arithmetic: Arithmetic { formulas, precision }, lanes, search, .. } = input.execution;
     Subject {
         scene: input.name.clone(),
         width: input.width,
@@ -105,50 +281,4 @@ fn subject(input: &Input, execution: Execution, tile: NonZeroU32) -> Subject {
         share_samples,
         search,
     }
-}
-
-/// Steps of the progress bar.
-const STEPS: f64 = 1000.0;
-
-/// A comparison for each way to compute the picture, measured in the same rounds.
-fn measure(
-    input: &Input,
-    ways: &[Execution],
-    tile: NonZeroU32,
-    options: &Options,
-) -> Result<Vec<Comparison>, String> {
-    let strategies = chosen(&options.strategy);
-    let threads =
-        if options.threads.is_empty() { vec![all_threads()] } else { distinct(&options.threads, |n| *n) };
-    let pairs = strategies.iter().flat_map(|&strategy| threads.iter().map(move |&n| (strategy, n)));
-    let entries: Vec<Entry<'_>> = pairs.map(|(strategy, threads)| Entry { strategy, threads }).collect();
-
-    let (width, height) = (input.width, input.height);
-    let works = ways.iter().map(|&way| input.work_by(way, width, height));
-    let works = works.collect::<Result<Vec<Box<dyn Work + Send>>, _>>()?;
-    let rays = |way: &Execution| {
-        let share_samples = way.share_samples;
-        move |tile: Area| primary_rays(tile.width, tile.height, &input.scene.render, share_samples)
-    };
-    let rays: Vec<_> = ways.iter().map(rays).collect();
-    let stopwatches = works.iter().zip(&rays).map(|(work, rays)| {
-        let stopwatch = Stopwatch::new(&**work, width, height, tile).map_err(|e| e.to_string())?;
-        Ok(stopwatch.counting(rays))
-    });
-    let mut stopwatches = stopwatches.collect::<Result<Vec<Stopwatch<'_>>, String>>()?;
-    let mut executors: Vec<&mut dyn Executor> =
-        stopwatches.iter_mut().map(|stopwatch| stopwatch as &mut dyn Executor).collect();
-
-    let bar = progress::bar(STEPS as u64);
-    let protocol = Protocol::default();
-    // Each way gets the time that it would have had alone.
-    let protocol = Protocol { budget: protocol.budget * ways.len() as u32, ..protocol };
-    let comparisons =
-        protocol.run_together(rayweave_registry::reference(), &entries, &mut executors, |progress| {
-            // Drawn here and nowhere else: between the timed spans.
-            bar.set_message(format!("{}, threads: {}", progress.strategy, progress.threads));
-            bar.set_position((progress.fraction * STEPS) as u64);
-        });
-    bar.finish_and_clear();
-    comparisons.map_err(|e| e.to_string())
 }

@@ -51,7 +51,7 @@ const ROUND: Duration = Duration::from_secs(12);
 
 /// Six rounds, for a 95 % interval, and no more of them than fit into a minute.
 const PROTOCOL: Protocol =
-    Protocol { min_rounds: 6, max_rounds: 20, budget: Duration::from_secs(60), seed: 1 };
+    Protocol { min_rounds: 6, max_rounds: 20, budget: Duration::from_secs(60), goal: None, seed: 1 };
 
 /// The side of a tile of an untimed picture: small, because the pictures are.
 const TILE: NonZeroU32 = NonZeroU32::new(8).expect("8 is not 0");

@@ -8,4 +8,5 @@ pub mod intersect;
 pub mod overhead;
 pub mod predict;
 pub mod render;
+pub mod sample;
 pub mod strategies;

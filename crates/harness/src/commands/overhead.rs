@@ -28,7 +28,7 @@ pub struct Arguments {
 
 /// Six rounds, for a 95 % interval, and no more of them than fit into 20 seconds.
 const PROTOCOL: Protocol =
-    Protocol { min_rounds: 6, max_rounds: 20, budget: Duration::from_secs(20), seed: 1 };
+    Protocol { min_rounds: 6, max_rounds: 20, budget: Duration::from_secs(20), goal: None, seed: 1 };
 
 /// Steps of the progress bar.
 const STEPS: f64 = 1000.0;

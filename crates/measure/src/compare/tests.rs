@@ -2,11 +2,11 @@
 
 use super::*;
 use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule};
-use rayweave_core::{Image, Plan, Renderer, StrategyError};
+use rayweave_core::{Image, Plan, Renderer, StrategyError, ThreadsStart};
 use std::cell::RefCell;
 
 /// Never asked to render: the executor makes up what it would do.
-struct Named(&'static str, ThreadsStart);
+pub(super) struct Named(pub &'static str, ThreadsStart);
 
 impl Strategy for Named {
     fn name(&self) -> &'static str {
@@ -30,9 +30,9 @@ impl Strategy for Named {
     }
 }
 
-static REFERENCE: Named = Named("reference", ThreadsStart::Never);
+pub(super) static REFERENCE: Named = Named("reference", ThreadsStart::Never);
 static POOL: Named = Named("pool", ThreadsStart::Prepare);
-static QUEUE: Named = Named("queue", ThreadsStart::Render);
+pub(super) static QUEUE: Named = Named("queue", ThreadsStart::Render);
 
 /// Answers the n-th call of a strategy by a function of its name and n, and moves the clock by the answer.
 struct Fake<F> {
@@ -59,24 +59,25 @@ fn fake<F: FnMut(&'static str, usize) -> Result<Rendering, String>>(answer: F) -
     Fake { answer, calls: Vec::new(), clock: Duration::ZERO }
 }
 
-fn picture(brightness: f32) -> Digest {
+pub(super) fn picture(brightness: f32) -> Digest {
     Image::filled(1, 1, [brightness; 3]).expect("a pixel").digest()
 }
 
 fn right(render_ns: u64) -> Result<Rendering, String> {
-    Ok(Rendering { sample: Sample { prepare_ns: 7, render_ns }, digest: picture(1.0) })
+    let sample = Sample { prepare_ns: 7, render_ns, ..Sample::default() };
+    Ok(Rendering { sample, digest: picture(1.0), first_digest: None })
 }
 
 fn wrong(render_ns: u64) -> Result<Rendering, String> {
     right(render_ns).map(|rendering| Rendering { digest: picture(0.5), ..rendering })
 }
 
-fn entry(strategy: &Named, threads: usize) -> Entry<'_> {
+pub(super) fn entry(strategy: &Named, threads: usize) -> Entry<'_> {
     Entry { strategy, threads: NonZeroUsize::new(threads).expect("not 0") }
 }
 
 fn protocol(min_rounds: usize, max_rounds: usize, budget_ns: u64) -> Protocol {
-    Protocol { min_rounds, max_rounds, budget: Duration::from_nanos(budget_ns), seed: 3 }
+    Protocol { min_rounds, max_rounds, budget: Duration::from_nanos(budget_ns), goal: None, seed: 3 }
 }
 
 fn run<F: FnMut(&'static str, usize) -> Result<Rendering, String>>(
@@ -127,7 +128,7 @@ fn the_warm_up_is_verified_and_not_counted() {
     let mut executor = fake(|_, call| right(if call == 0 { 100_000 } else { 100 }));
     let comparison = run(protocol(5, 5, u64::MAX), &mut executor);
     for row in &comparison.rows[2..] {
-        assert_eq!(row.samples, [Sample { prepare_ns: 7, render_ns: 100 }; 5]);
+        assert_eq!(row.samples, [Sample { prepare_ns: 7, render_ns: 100, ..Sample::default() }; 5]);
     }
 
     let mut executor = fake(|name, call| if name == "pool" && call == 0 { wrong(1) } else { right(1) });
@@ -171,6 +172,35 @@ fn a_wrong_picture_ends_its_row_and_no_other() {
     assert_eq!((queue.samples.len(), queue.digest), (6, Some(comparison.digest)));
 }
 
+/// Catches a first picture that nobody looks at, and its time in that of the second.
+#[test]
+fn both_pictures_of_a_fresh_process_are_verified() {
+    let both = |render_ns, first| {
+        right(render_ns).map(|Rendering { sample, digest, .. }| Rendering {
+            sample: Sample { one_shot_ns: Some(3 * render_ns), cpu_ns: Some(2 * render_ns), ..sample },
+            digest,
+            first_digest: Some(picture(first)),
+        })
+    };
+    let mut executor = fake(|name, call| match (name, call) {
+        ("pool", _) => both(5, 1.0),
+        ("queue", 3..) => both(10, 0.5),
+        _ => both(10, 1.0),
+    });
+    let comparison = run(protocol(6, 6, u64::MAX), &mut executor);
+    let figures = comparison.rows[2].figures.expect("figures");
+    assert_eq!((figures.median_ns, figures.cpu_ns), (5.0, Some(10.0)));
+    let speedup = Interval { median: 2.0, low: 2.0, high: 2.0 };
+    assert_eq!(figures.one_shot, Some(OneShot { median_ns: 15.0, speedup }));
+    let queue = &comparison.rows[3];
+    assert!(!queue.identical && queue.samples.len() == 2);
+    assert_eq!((queue.digest, &queue.error), (Some(picture(0.5)), &None));
+
+    let comparison = run(protocol(1, 1, 0), &mut fake(|_, _| right(1)));
+    let figures = comparison.rows[2].figures.expect("figures");
+    assert_eq!((figures.one_shot, figures.cpu_ns), (None, None));
+}
+
 #[test]
 fn an_error_ends_its_row_and_no_other() {
     let mut executor =
@@ -209,8 +239,8 @@ fn a_failing_reference_is_an_error() {
 
 #[test]
 fn the_least_number_of_rounds_is_enough_for_an_interval() {
-    let Protocol { min_rounds, max_rounds, budget, .. } = Protocol::default();
-    assert_eq!((min_rounds, max_rounds, budget), (6, 40, Duration::from_secs(30)));
+    let Protocol { min_rounds, max_rounds, budget, goal, .. } = Protocol::default();
+    assert_eq!((min_rounds, max_rounds, budget, goal), (8, 40, Duration::from_secs(150), None));
 }
 
 #[test]

@@ -41,6 +41,12 @@ struct Line<'a> {
     primary_rays: Option<u64>,
     redundant_rays: Option<u64>,
     adaptive: bool,
+    one_shot_ns: Option<u64>,
+    one_shot_speedup: Option<f64>,
+    one_shot_speedup_low: Option<f64>,
+    one_shot_speedup_high: Option<f64>,
+    cpu_ns: Option<u64>,
+    disturbed: bool,
 }
 
 pub(super) fn text(report: &Report<'_>) -> String {
@@ -51,14 +57,19 @@ pub(super) fn both(BothReport { shared, unshared }: &BothReport<'_>) -> String {
     csv::text(lines(shared).chain(lines(unshared)))
 }
 
+pub(super) fn several(reports: &[Report<'_>]) -> String {
+    csv::text(reports.iter().flat_map(lines))
+}
+
 fn lines<'a>(report: &Report<'a>) -> impl Iterator<Item = Line<'a>> {
     report.comparison.rows.iter().map(|row| line(report, row))
 }
 
 fn line<'a>(report: &Report<'a>, row: &'a Row) -> Line<'a> {
-    let Report { subject, machine, .. } = report;
+    let Report { subject, machine, noise, .. } = report;
     let figures = row.figures.as_ref();
     let speedup = figures.map(|figures| figures.speedup);
+    let one_shot = figures.and_then(|figures| figures.one_shot);
     Line {
         scene: &subject.scene,
         width: subject.width,
@@ -94,5 +105,11 @@ fn line<'a>(report: &Report<'a>, row: &'a Row) -> Line<'a> {
         primary_rays: row.rays.map(|rays| rays.primary),
         redundant_rays: row.rays.map(|rays| rays.redundant),
         adaptive: subject.adaptive,
+        one_shot_ns: one_shot.map(|one_shot| one_shot.median_ns.round() as u64),
+        one_shot_speedup: one_shot.map(|one_shot| one_shot.speedup.median),
+        one_shot_speedup_low: one_shot.map(|one_shot| one_shot.speedup.low),
+        one_shot_speedup_high: one_shot.map(|one_shot| one_shot.speedup.high),
+        cpu_ns: figures.and_then(|figures| figures.cpu_ns).map(|ns| ns.round() as u64),
+        disturbed: noise.is_disturbing(),
     }
 }

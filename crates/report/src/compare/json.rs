@@ -1,13 +1,14 @@
 //! The comparison for other programs.
 
-use super::{BothReport, Report, search, threads_start};
+use super::baseline::{self, Baseline, Change};
+use super::{BothReport, Report, noise, search, threads_start};
 use crate::json::{self, Ratio};
 use crate::machine::Facts;
 use rayweave_measure::compare::{Role, Row};
 use serde::Serialize;
 
 /// It changes when a key changes its meaning or goes.
-const SCHEMA: u32 = 1;
+pub(super) const SCHEMA: u32 = 1;
 
 #[derive(Serialize)]
 struct Object<'a> {
@@ -28,6 +29,10 @@ struct Object<'a> {
     share_samples: bool,
     search: &'a str,
     adaptive: bool,
+    precision_goal: Option<f64>,
+    noise: noise::Object,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    changes: Option<Vec<baseline::Object>>,
     results: Vec<Result<'a>>,
 }
 
@@ -58,10 +63,31 @@ struct Result<'a> {
     error: Option<&'a str>,
     primary_rays: Option<u64>,
     redundant_rays: Option<u64>,
+    one_shot: Option<OneShot>,
+    cpu_ns: Option<u64>,
+    cpu_samples_ns: Option<Vec<u64>>,
+}
+
+#[derive(Serialize)]
+struct OneShot {
+    median_ns: u64,
+    samples_ns: Vec<u64>,
+    speedup: Ratio,
 }
 
 pub(super) fn text(report: &Report<'_>) -> String {
     json::text(&object(report))
+}
+
+/// Comparisons of several scenes.
+#[derive(Serialize)]
+struct Several<'a> {
+    schema: u32,
+    comparisons: Vec<Object<'a>>,
+}
+
+pub(super) fn several(reports: &[Report<'_>]) -> String {
+    json::text(&Several { schema: SCHEMA, comparisons: reports.iter().map(object).collect() })
 }
 
 pub(super) fn both(report: &BothReport<'_>) -> String {
@@ -73,7 +99,8 @@ pub(super) fn both(report: &BothReport<'_>) -> String {
 }
 
 fn object<'a>(report: &Report<'a>) -> Object<'a> {
-    let Report { subject, comparison, machine } = *report;
+    let Report { subject, comparison, machine, noise, baseline } = *report;
+    let changes = |baseline: &Baseline| baseline.changes(comparison).iter().map(Change::object).collect();
     Object {
         schema: SCHEMA,
         scene: &subject.scene,
@@ -92,6 +119,9 @@ fn object<'a>(report: &Report<'a>) -> Object<'a> {
         share_samples: subject.share_samples,
         search: search(subject.search),
         adaptive: subject.adaptive,
+        precision_goal: comparison.goal,
+        noise: noise.into(),
+        changes: baseline.map(changes),
         results: comparison.rows.iter().map(result).collect(),
     }
 }
@@ -115,5 +145,17 @@ fn result(row: &Row) -> Result<'_> {
         error: row.error.as_deref(),
         primary_rays: row.rays.map(|rays| rays.primary),
         redundant_rays: row.rays.map(|rays| rays.redundant),
+        one_shot: one_shot(row),
+        cpu_ns: figures.and_then(|figures| figures.cpu_ns).map(|ns| ns.round() as u64),
+        cpu_samples_ns: row.samples.iter().map(|sample| sample.cpu_ns).collect(),
     }
+}
+
+fn one_shot(row: &Row) -> Option<OneShot> {
+    let one_shot = row.figures.as_ref()?.one_shot?;
+    Some(OneShot {
+        median_ns: one_shot.median_ns.round() as u64,
+        samples_ns: row.samples.iter().filter_map(|sample| sample.one_shot_ns).collect(),
+        speedup: one_shot.speedup.into(),
+    })
 }

@@ -1,15 +1,16 @@
 //! The comparison for people.
 
-use super::{BothReport, Report, Subject, search};
+use super::{BothReport, Report, Subject, baseline, noise, search};
 use crate::{machine, style};
 use rayweave_core::{Formulas, Sampling, Search, ThreadsStart};
 use rayweave_measure::compare::{Rays, Role, Row};
 use rayweave_measure::{Comparison, Interval};
 
-const HEADER: [&str; 9] = [
+const HEADER: [&str; 10] = [
     "strategy",
     "threads",
     "median\nms",
+    "one shot\nms",
     "speed-up\n[95 % interval]",
     "efficiency",
     "serial\nfraction",
@@ -19,7 +20,7 @@ const HEADER: [&str; 9] = [
 ];
 
 /// The columns of numbers, which line up at their right.
-const NUMBERS: std::ops::RangeInclusive<usize> = 1..=6;
+const NUMBERS: std::ops::RangeInclusive<usize> = 1..=7;
 
 /// What a cell without a figure holds.
 const NONE: &str = "-";
@@ -28,7 +29,12 @@ pub(super) fn text(report: &Report<'_>) -> String {
     let mut lines = measured(report);
     lines.extend(legend(report.comparison));
     lines.extend(control(report.comparison));
+    lines.extend(goal(report.comparison));
+    lines.push(noise::text(report.noise));
     lines.push(machine::text(report.machine));
+    if let Some(baseline) = report.baseline {
+        lines.extend([String::new(), baseline::text(baseline, report)]);
+    }
     lines.join("\n")
 }
 
@@ -37,6 +43,7 @@ pub(super) fn both(report: &BothReport<'_>) -> String {
     for part in [&report.shared, &report.unshared] {
         lines.extend(measured(part));
         lines.extend(control(part.comparison));
+        lines.extend(goal(part.comparison));
         lines.push(String::new());
     }
     let shared = &report.shared;
@@ -48,6 +55,7 @@ pub(super) fn both(report: &BothReport<'_>) -> String {
              of the same rounds."
         )
     }));
+    lines.push(noise::text(shared.noise));
     lines.push(machine::text(shared.machine));
     lines.join("\n")
 }
@@ -63,7 +71,7 @@ fn measured(report: &Report<'_>) -> Vec<String> {
     lines
 }
 
-fn heading(Report { subject, comparison, .. }: &Report<'_>) -> String {
+pub(super) fn heading(Report { subject, comparison, .. }: &Report<'_>) -> String {
     let rays = match (subject.antialiasing, subject.sampling) {
         (0, _) => "one ray a pixel".to_owned(),
         (density, Sampling::Lattice) if subject.adaptive => format!("antialiasing {density} (adaptive)"),
@@ -100,6 +108,7 @@ fn cells(subject: &Subject, row: &Row) -> [String; HEADER.len()] {
         format!("{}{control}", row.strategy),
         row.threads.to_string(),
         figure(figures.map(|f| milliseconds(f.median_ns))),
+        figure(figures.and_then(|f| f.one_shot).map(|one_shot| milliseconds(one_shot.median_ns))),
         figure(figures.map(|f| style::interval(f.speedup))),
         figure(figures.map(|f| format!("{:.0} %", f.efficiency * 100.0))),
         figure(figures.and_then(|f| f.serial_fraction).map(|fraction| format!("{fraction:.3}"))),
@@ -110,7 +119,7 @@ fn cells(subject: &Subject, row: &Row) -> [String; HEADER.len()] {
 }
 
 /// Down to a microsecond, and no more digits than a measurement supports.
-fn milliseconds(ns: f64) -> String {
+pub(super) fn milliseconds(ns: f64) -> String {
     let ms = ns / 1e6;
     let decimals = if ms < 10.0 {
         3
@@ -164,10 +173,12 @@ pub(crate) fn complaint(row: &Row) -> Option<String> {
 }
 
 /// How the columns are meant.
-fn legend(comparison: &Comparison) -> [String; 3] {
+fn legend(comparison: &Comparison) -> [String; 4] {
     let reference = reference(comparison);
     [
-        "time: rendering alone, each picture verified outside of it; threads started \"before\" it are not in it."
+        "median: of second renderings, each in a process of its own; threads started \"before\" are not in it."
+            .to_owned(),
+        "one shot: preparing and the first rendering there, of a single picture. All pictures are verified untimed."
             .to_owned(),
         format!(
             "speed-up: time of {reference} over the row's, median over the rounds. Serial fraction: Karp and Flatt."
@@ -190,6 +201,18 @@ fn control(comparison: &Comparison) -> Option<String> {
              Chance alone keeps it out of at most one quiet run in twenty."
         };
         format!("control: {reference} over itself is {median:.3} [{low:.3}, {high:.3}]; {verdict}")
+    })
+}
+
+/// Whether the rows are as precise as was wished for.
+fn goal(comparison: &Comparison) -> Option<String> {
+    let goal = comparison.goal?;
+    Some(match comparison.imprecise_rows() {
+        0 => format!("goal: each speed-up is known to +-{:.3} % or better.", goal * 100.0),
+        missed => format!(
+            "goal: {missed} speed-ups are not known to +-{:.3} %: time was up. Give more, --time-limit SECONDS.",
+            goal * 100.0
+        ),
     })
 }
 

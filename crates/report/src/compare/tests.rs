@@ -2,16 +2,27 @@
 //! wrong picture, and one whose threads could not be started. And of two that were measured together.
 
 use super::*;
+use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule};
 use rayweave_core::{Digest, Image};
 use rayweave_measure::Interval;
-use rayweave_measure::compare::{Figures, Rays, Role, Sample};
+use rayweave_measure::compare::{Figures, OneShot, Rays, Role, Sample};
+use std::time::Duration;
 
-fn digest(brightness: f32) -> Digest {
+pub(super) fn digest(brightness: f32) -> Digest {
     Image::filled(1, 1, [brightness; 3]).expect("a pixel").digest()
 }
 
 /// Of 500 x 400 pixels: 4.38 each, of which 4 would have been enough.
 const RAYS: Rays = Rays { primary: 876_000, redundant: 76_000 };
+
+/// The first rendering takes a quarter more, preparing included; two threads compute nearly all of the time.
+pub(super) fn sample(ns: u64) -> Sample {
+    Sample { prepare_ns: 84_600, render_ns: ns, one_shot_ns: Some(ns / 4 * 5), cpu_ns: Some(ns / 10 * 19) }
+}
+
+fn around(median: f64) -> Interval {
+    Interval { median, low: median - 0.04, high: median + 0.06 }
+}
 
 fn row(strategy: &'static str, threads: usize, role: Role, threads_start: ThreadsStart, ns: u64) -> Row {
     let speedup = 2e9 / ns as f64;
@@ -20,22 +31,25 @@ fn row(strategy: &'static str, threads: usize, role: Role, threads_start: Thread
         threads,
         role,
         threads_start,
+        rule: Rule { piece: Piece::Tile, dealing: Dealing::Shared { chunk: 1 }, delivery: Delivery::InPlace },
         identical: true,
         digest: Some(digest(1.0)),
         error: None,
         rays: Some(RAYS),
-        samples: vec![Sample { prepare_ns: 84_600, render_ns: ns }; 2],
+        samples: vec![sample(ns); 2],
         figures: Some(Figures {
             median_ns: ns as f64,
             prepare_ns: 84_600.0,
-            speedup: Interval { median: speedup, low: speedup - 0.04, high: speedup + 0.06 },
+            one_shot: Some(OneShot { median_ns: 1.25 * ns as f64, speedup: around(1.6e9 / ns as f64) }),
+            cpu_ns: Some(1.9 * ns as f64),
+            speedup: around(speedup),
             efficiency: speedup / threads as f64,
             serial_fraction: (threads > 1).then_some(0.0256),
         }),
     }
 }
 
-fn comparison() -> Comparison {
+pub(super) fn comparison() -> Comparison {
     let mut wrong = row("queue", 2, Role::Contender, ThreadsStart::Render, 1_000_000_000);
     wrong.identical = false;
     wrong.digest = Some(digest(0.5));
@@ -54,10 +68,10 @@ fn comparison() -> Comparison {
         wrong,
         failed,
     ];
-    Comparison { rows, digest: digest(1.0), rounds: 2, seed: 1 }
+    Comparison { rows, digest: digest(1.0), rounds: 2, seed: 1, goal: None }
 }
 
-fn machine() -> Machine {
+pub(super) fn machine() -> Machine {
     Machine {
         cpu: "A CPU".to_owned(),
         logical_cores: 8,
@@ -72,7 +86,20 @@ fn machine() -> Machine {
     }
 }
 
-fn subject() -> Subject {
+/// 1 % of two cores for ten seconds.
+pub(super) fn noise() -> Noise {
+    Noise {
+        wall: Duration::from_secs(10),
+        cores: 2,
+        foreign: Some(Duration::from_millis(150)),
+        stolen: Some(Duration::from_millis(50)),
+        throttled: Some(0),
+        involuntary_switches: Some(34),
+        megahertz: Some(2400.0..=3600.0),
+    }
+}
+
+pub(super) fn subject() -> Subject {
     Subject {
         scene: "room".to_owned(),
         width: 500,
@@ -89,8 +116,8 @@ fn subject() -> Subject {
     }
 }
 
-fn with_report(comparison: &Comparison, read: impl FnOnce(&Report<'_>) -> String) -> String {
-    read(&Report { subject: &subject(), comparison, machine: &machine() })
+pub(super) fn with_report(comparison: &Comparison, read: impl FnOnce(&Report<'_>) -> String) -> String {
+    read(&Report { subject: &subject(), comparison, machine: &machine(), noise: &noise(), baseline: None })
 }
 
 /// The same without samples shared: the reference takes three times as long, and the pool fails.
@@ -107,11 +134,23 @@ fn unshared() -> Comparison {
 }
 
 fn with_both(unshared: &Comparison, read: impl FnOnce(&BothReport<'_>) -> String) -> String {
-    let (subject, machine, shared) = (subject(), machine(), comparison());
+    let (subject, machine, noise, shared) = (subject(), machine(), noise(), comparison());
     let other = Subject { share_samples: false, ..subject.clone() };
     read(&BothReport {
-        shared: Report { subject: &subject, comparison: &shared, machine: &machine },
-        unshared: Report { subject: &other, comparison: unshared, machine: &machine },
+        shared: Report {
+            subject: &subject,
+            comparison: &shared,
+            machine: &machine,
+            noise: &noise,
+            baseline: None,
+        },
+        unshared: Report {
+            subject: &other,
+            comparison: unshared,
+            machine: &machine,
+            noise: &noise,
+            baseline: None,
+        },
     })
 }
 
@@ -125,23 +164,25 @@ fn table_as_a_whole() {
     let text = with_report(&comparison(), |report| report.table());
     let expected = r#"room, 500 x 400 pixels, antialiasing 2, f32, tiles of 32; 2 interleaved rounds, digest RIGHT
 
-strategy              threads  median           speed-up  efficiency    serial           rays  threads        identical
-                                   ms    [95 % interval]              fraction                 start
-────────────────────────────────────────────────────────────────────────────────────────────────────────────────────────
-sequential                  1    2000  1.00 [0.96, 1.06]       100 %         -  4.4/px +9.5 %  -              yes
-sequential (control)        1    2010  1.00 [0.96, 1.06]       100 %         -  4.4/px +9.5 %  -              yes
-pool                        2    1026  1.95 [1.91, 2.01]        97 %     0.026  4.4/px +9.5 %  before: 85 us  yes
-queue                       2       -                  -           -         -  4.4/px +9.5 %  in the time    NO
-many, "too" many         9000       -                  -           -         -              -  in the time    failed
+strategy              threads  median  one shot           speed-up  efficiency    serial           rays  threads        identical
+                                   ms        ms    [95 % interval]              fraction                 start
+──────────────────────────────────────────────────────────────────────────────────────────────────────────────────────────────────
+sequential                  1    2000      2500  1.00 [0.96, 1.06]       100 %         -  4.4/px +9.5 %  -              yes
+sequential (control)        1    2010      2512  1.00 [0.96, 1.06]       100 %         -  4.4/px +9.5 %  -              yes
+pool                        2    1026      1282  1.95 [1.91, 2.01]        97 %     0.026  4.4/px +9.5 %  before: 85 us  yes
+queue                       2       -         -                  -           -         -  4.4/px +9.5 %  in the time    NO
+many, "too" many         9000       -         -                  -           -         -              -  in the time    failed
 
 queue, 2 threads: a wrong picture, digest WRONG, after 2 right ones
 many, "too" many, 9000 threads: failed after 0 samples: cannot start 9000 threads
 computed: 8 rays side by side, samples shared, search auto
-time: rendering alone, each picture verified outside of it; threads started "before" it are not in it.
+median: of second renderings, each in a process of its own; threads started "before" are not in it.
+one shot: preparing and the first rendering there, of a single picture. All pictures are verified untimed.
 speed-up: time of sequential over the row's, median over the rounds. Serial fraction: Karp and Flatt.
 rays: primary ones, counted in the warm-up; + those that the whole picture as a single tile would not need.
 control: sequential over itself is 0.995 [0.955, 1.055]; as it should be, 1 is in it.
 That much is order and drift, of one thread; to tell rows apart compare their own intervals.
+noise: others had 1.0 % of the machine; 0.1 s of it other machines on the same host; 34 involuntary switches; 2400 to 3600 MHz.
 machine: A CPU, 8 logical cores, 2 available, quota 1.5 cores, linux x86_64
 program: rustc 1.0, release build, commit 0123456789ab"#;
     assert_eq!(without_digests(&text), expected);
@@ -172,6 +213,24 @@ fn a_control_that_differs_from_itself_is_told() {
     assert!(notes_fit(&text), "{text}");
 }
 
+/// Catches a disturbance that only the figures show, and a goal that is said to be met.
+#[test]
+fn what_is_to_be_doubted_is_told() {
+    let line = |noise: &Noise| super::noise::text(noise);
+    let disturbed = Noise { foreign: Some(Duration::from_secs(5)), throttled: Some(3), ..noise() };
+    let told = "noise: others had 25.3 % of the machine; 0.1 s of it other machines on the same host; stopped 3 times \
+                by the group's limit; 34 involuntary switches; 2400 to 3600 MHz.\nDISTURBED: measure again when the \
+                machine is quiet.";
+    assert_eq!(line(&disturbed), told);
+    assert_eq!(line(&Noise::default()), "noise: this system does not tell.");
+
+    let goal = |goal| with_report(&Comparison { goal, ..comparison() }, |report| report.table());
+    assert!(!goal(None).contains("goal:"));
+    assert!(goal(Some(0.06)).contains("goal: each speed-up is known to +-6.000 % or better."));
+    // The half of 0.1 is 5 % of the reference's speed-up, a little more of its control's, and 2.6 % of the pool's.
+    assert!(goal(Some(0.04)).contains("goal: 2 speed-ups are not known to +-4.000 %"));
+}
+
 #[test]
 fn json_has_the_keys_that_stay() {
     let text = with_report(&comparison(), |report| report.json());
@@ -198,6 +257,21 @@ fn json_has_the_keys_that_stay() {
     assert_eq!((&pool["primary_rays"], &pool["redundant_rays"]), (&876_000.into(), &76_000.into()));
     assert!(value["results"][4]["primary_rays"].is_null() && value["results"][4]["redundant_rays"].is_null());
     assert_eq!((value.get("unshared"), value.get("sharing_speedup")), (None, None));
+    let one_shot = &pool["one_shot"];
+    assert_eq!(
+        (&one_shot["median_ns"], &one_shot["samples_ns"][0]),
+        (&1_282_051_283.into(), &1_282_051_280.into())
+    );
+    assert!((one_shot["speedup"]["median"].as_f64().expect("a number") - 1.56).abs() < 1e-9);
+    assert_eq!(
+        (&pool["cpu_ns"], pool["cpu_samples_ns"].as_array().map(Vec::len)),
+        (&1_948_717_949.into(), Some(2))
+    );
+    let noise = &value["noise"];
+    assert_eq!((&noise["wall_s"], &noise["foreign_cpu_s"]), (&10.0.into(), &0.15.into()));
+    assert_eq!((&noise["share_of_others"], &noise["disturbed"]), (&0.01.into(), &false.into()));
+    assert_eq!((&noise["throttled"], &noise["highest_mhz"]), (&0.into(), &3600.0.into()));
+    assert_eq!(value["precision_goal"], serde_json::Value::Null);
 }
 
 #[test]
@@ -243,14 +317,14 @@ fn csv_has_a_line_for_each_row() {
 fn both_tables_as_a_whole() {
     let expected = r#"room, 500 x 400 pixels, antialiasing 2, f32, tiles of 32; 2 interleaved rounds, digest RIGHT
 
-strategy              threads  median           speed-up  efficiency    serial           rays  threads        identical
-                                   ms    [95 % interval]              fraction                 start
-────────────────────────────────────────────────────────────────────────────────────────────────────────────────────────
-sequential                  1    2000  1.00 [0.96, 1.06]       100 %         -  4.4/px +9.5 %  -              yes
-sequential (control)        1    2010  1.00 [0.96, 1.06]       100 %         -  4.4/px +9.5 %  -              yes
-pool                        2    1026  1.95 [1.91, 2.01]        97 %     0.026  4.4/px +9.5 %  before: 85 us  yes
-queue                       2       -                  -           -         -  4.4/px +9.5 %  in the time    NO
-many, "too" many         9000       -                  -           -         -              -  in the time    failed
+strategy              threads  median  one shot           speed-up  efficiency    serial           rays  threads        identical
+                                   ms        ms    [95 % interval]              fraction                 start
+──────────────────────────────────────────────────────────────────────────────────────────────────────────────────────────────────
+sequential                  1    2000      2500  1.00 [0.96, 1.06]       100 %         -  4.4/px +9.5 %  -              yes
+sequential (control)        1    2010      2512  1.00 [0.96, 1.06]       100 %         -  4.4/px +9.5 %  -              yes
+pool                        2    1026      1282  1.95 [1.91, 2.01]        97 %     0.026  4.4/px +9.5 %  before: 85 us  yes
+queue                       2       -         -                  -           -         -  4.4/px +9.5 %  in the time    NO
+many, "too" many         9000       -         -                  -           -         -              -  in the time    failed
 
 queue, 2 threads: a wrong picture, digest WRONG, after 2 right ones
 many, "too" many, 9000 threads: failed after 0 samples: cannot start 9000 threads
@@ -260,22 +334,24 @@ That much is order and drift, of one thread; to tell rows apart compare their ow
 
 room, 500 x 400 pixels, antialiasing 2, f32, tiles of 32; 2 interleaved rounds, digest RIGHT
 
-strategy              threads  median           speed-up  efficiency    serial            rays  threads  identical
-                                   ms    [95 % interval]              fraction                  start
-───────────────────────────────────────────────────────────────────────────────────────────────────────────────────
-sequential                  1    2000  1.00 [0.96, 1.06]       100 %         -  25.0/px +0.0 %  -        yes
-sequential (control)        1    2010  1.00 [0.96, 1.06]       100 %         -  25.0/px +0.0 %  -        yes
-pool                        2       -                  -           -         -  25.0/px +0.0 %  -        failed
+strategy              threads  median  one shot           speed-up  efficiency    serial            rays  threads  identical
+                                   ms        ms    [95 % interval]              fraction                  start
+─────────────────────────────────────────────────────────────────────────────────────────────────────────────────────────────
+sequential                  1    2000      2500  1.00 [0.96, 1.06]       100 %         -  25.0/px +0.0 %  -        yes
+sequential (control)        1    2010      2512  1.00 [0.96, 1.06]       100 %         -  25.0/px +0.0 %  -        yes
+pool                        2       -         -                  -           -         -  25.0/px +0.0 %  -        failed
 
 pool, 2 threads: failed after 2 samples: gone
 computed: 8 rays side by side, samples not shared, search auto
 control: sequential over itself is 0.995 [0.955, 1.055]; as it should be, 1 is in it.
 That much is order and drift, of one thread; to tell rows apart compare their own intervals.
 
-time: rendering alone, each picture verified outside of it; threads started "before" it are not in it.
+median: of second renderings, each in a process of its own; threads started "before" are not in it.
+one shot: preparing and the first rendering there, of a single picture. All pictures are verified untimed.
 speed-up: time of sequential over the row's, median over the rounds. Serial fraction: Karp and Flatt.
 rays: primary ones, counted in the warm-up; + those that the whole picture as a single tile would not need.
 sharing: without it sequential takes 3.00 [3.00, 3.00] times as long; both tables are of the same rounds.
+noise: others had 1.0 % of the machine; 0.1 s of it other machines on the same host; 34 involuntary switches; 2400 to 3600 MHz.
 machine: A CPU, 8 logical cores, 2 available, quota 1.5 cores, linux x86_64
 program: rustc 1.0, release build, commit 0123456789ab"#;
     let text = with_both(&unshared(), |report| report.table());
@@ -317,7 +393,7 @@ fn csv_of_both_is_one_table() {
     let alone = with_report(&comparison(), |report| report.csv());
     let rest = text.strip_prefix(&alone).expect("the lines with samples shared come first");
     assert_eq!(rest.lines().count(), 3);
-    assert!(rest.lines().all(|line| line.ends_with(",8,false,auto,5000000,0,false")), "{rest}");
+    assert!(rest.lines().all(|line| line.contains(",8,false,auto,5000000,0,false,")), "{rest}");
 }
 
 #[test]

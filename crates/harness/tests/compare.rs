@@ -1,0 +1,301 @@
+//! `rayweave compare` and what it starts, `rayweave sample`, as their users meet them.
+
+mod program;
+
+use program::{folder, json, rayweave, repository};
+use serde_json::Value;
+use std::fs;
+
+/// Catches a child that renders something else than was asked for: each option has to reach it.
+#[test]
+fn a_sample_renders_as_the_comparison_says() {
+    let folder = folder();
+    let options = "--size 9x7 --antialiasing 1 --sampling importance --precision f64 --formulas textbook \
+                   --lanes 1 --share-samples off --adaptive off --search exhaustive";
+    let rendered = rayweave(folder.path(), &format!("render {options} -o a.ppm")).expect_success();
+    let digest = rendered.split("digest ").nth(1).expect("a digest")[..16].to_owned();
+    let compare = format!("compare {options} --strategy tile-queue --threads 2 --time-limit 1 --json a.json");
+    rayweave(folder.path(), &compare).expect_success();
+    let object = json(&folder.path().join("a.json"));
+    assert!(object["digest"].as_str().expect("a digest").starts_with(&digest), "{digest}: {object}");
+
+    let sample = format!("sample {options} --strategy tile-queue --threads 2 --tile 4");
+    let answer = rayweave(folder.path(), &sample).expect_success();
+    let answer: Value = serde_json::from_str(&answer).expect("a line of JSON");
+    let rendered = &answer["rendered"];
+    assert_eq!((&rendered["digest"], &rendered["first_digest"]), (&object["digest"], &object["digest"]));
+    assert!(rendered["one_shot_ns"].as_u64() > rendered["prepare_ns"].as_u64(), "{answer}");
+    assert!(rendered["render_ns"].as_u64() > Some(0) && rendered["primary_rays"].is_null(), "{answer}");
+    assert_eq!(rendered["cpu_ns"].is_u64(), cfg!(unix));
+
+    let counted = rayweave(folder.path(), &format!("{sample} --count-rays")).expect_success();
+    let counted: Value = serde_json::from_str(&counted).expect("a line of JSON");
+    assert_eq!(counted["rendered"]["primary_rays"], 9 * 7 * 5);
+    assert!(counted["rendered"]["one_shot_ns"].is_null(), "{counted}");
+}
+
+#[test]
+fn a_sample_that_fails_says_why_and_is_listed_nowhere() {
+    let folder = folder();
+    let answer = rayweave(folder.path(), "sample --strategy sequential --threads 1 -- missing.toml");
+    let answer: Value = serde_json::from_str(&answer.expect_success()).expect("a line of JSON");
+    let reason = answer["failed"].as_str().expect("a reason");
+    assert!(reason.starts_with("missing.toml: cannot be read"), "{reason}");
+    let help = rayweave(folder.path(), "--help").expect_success();
+    assert!(help.contains("compare") && !help.contains("sample of a comparison"), "{help}");
+}
+
+#[test]
+fn a_scene_may_be_called_like_an_option() {
+    let folder = folder();
+    fs::copy(program::scene("report.toml"), folder.path().join("--help.toml")).expect("copied");
+    let small = "--size 4x4 --antialiasing 0 --strategy sequential --time-limit 1";
+    let text = rayweave(folder.path(), &format!("compare {small} -- --help.toml")).expect_success();
+    assert!(text.starts_with("--help.toml, 4 x 4 pixels"), "{text}");
+}
+
+/// Catches limits that nobody keeps: 40 rounds where a goal asks for more, or more where it is met.
+#[test]
+fn rounds_follow_the_goal_and_the_limit() {
+    let folder = folder();
+    let run = |options: &str| {
+        let small = "compare --size 4x4 --antialiasing 0 --strategy sequential";
+        let text = rayweave(folder.path(), &format!("{small} {options} --json a.json")).expect_success();
+        let object = json(&folder.path().join("a.json"));
+        (text, object["rounds"].as_u64().expect("a number"), object["precision_goal"].clone())
+    };
+    let (text, rounds, goal) = run("--precision-goal 100% --time-limit 600");
+    assert!(rounds < 40 && text.contains("goal: each speed-up is known to +-100.000 % or better."), "{text}");
+    assert_eq!(goal, Value::from(1.0));
+    let (text, rounds, goal) = run("--precision-goal 0.001 --time-limit 1");
+    assert!(rounds >= 8 && text.contains("not known to +-0.001 %"), "{text}");
+    assert_eq!(goal, Value::from(0.00001));
+    let (text, _, goal) = run("--time-limit 1");
+    assert!(!text.contains("goal:") && goal.is_null(), "{text}");
+}
+
+#[test]
+fn noise_is_told() {
+    let folder = folder();
+    let arguments = "compare --size 4x4 --strategy sequential --time-limit 1 --json a.json";
+    let text = rayweave(folder.path(), arguments).expect_success();
+    assert!(text.contains("\nnoise: "), "{text}");
+    let noise = &json(&folder.path().join("a.json"))["noise"];
+    assert!(noise["wall_s"].as_f64() > Some(0.0) && noise["disturbed"].is_boolean(), "{noise}");
+    if cfg!(target_os = "linux") {
+        assert!(noise["foreign_cpu_s"].is_f64() && noise["involuntary_switches"].is_u64(), "{noise}");
+    }
+}
+
+#[test]
+fn compare_writes_what_other_programs_read() {
+    let folder = folder();
+    let arguments =
+        "compare --size 24x16 --antialiasing 1 --threads 1,2 --time-limit 1 --json a.json --csv a.csv";
+    let table = rayweave(folder.path(), arguments).expect_success();
+    let object = json(&folder.path().join("a.json"));
+    assert_eq!(object["schema"], 1);
+    assert_eq!((&object["width"], &object["height"]), (&Value::from(24), &Value::from(16)));
+    assert!(object["scene"].is_string() && object["machine"].is_object());
+    let results = object["results"].as_array().expect("a list");
+    // The reference, its control, and the other strategies with one and with two threads.
+    assert_eq!(results.len(), 2 + 2 * (rayweave_registry::available().len() - 1));
+    let digest = &results[0]["digest"];
+    for result in results {
+        assert_eq!(result["identical"], true);
+        assert_eq!(&result["digest"], digest);
+        let one_shot = &result["one_shot"];
+        for samples in [&result["samples_ns"], &result["prepare_samples_ns"], &one_shot["samples_ns"]] {
+            let samples = samples.as_array().expect("a list");
+            assert!(samples.len() >= 8 && samples.iter().all(Value::is_u64));
+        }
+        assert!(one_shot["median_ns"].is_u64() && one_shot["speedup"]["median"].is_f64());
+        assert!(result["median_ns"].is_number());
+        let [low, median, high] =
+            ["low", "median", "high"].map(|key| result["speedup"][key].as_f64().expect("a number"));
+        assert!(low <= median && median <= high);
+        assert!(table.contains(result["strategy"].as_str().expect("a name")));
+    }
+    let csv = fs::read_to_string(folder.path().join("a.csv")).expect("the file");
+    assert_eq!(csv.lines().count(), 1 + results.len());
+}
+
+/// What is traced where samples are shared: of `sides` a lattice of density `density` and what lies around it.
+fn lattice_points(density: u64, sides: &[(u64, u64)]) -> u64 {
+    let points = |side: u64| density * (side + 1) + 1;
+    sides.iter().map(|&(width, height)| points(width) * points(height)).sum()
+}
+
+/// The rays of a strategy's results, all of them the same, and how many of them are redundant.
+fn rays(object: &Value, strategy: &str) -> (u64, u64) {
+    let results = object["results"].as_array().expect("a list").iter();
+    let mut found: Vec<(u64, u64)> = results
+        .filter(|result| result["strategy"] == strategy)
+        .map(|result| ["primary_rays", "redundant_rays"].map(|key| result[key].as_u64().expect("a number")))
+        .map(<(u64, u64)>::from)
+        .collect();
+    found.dedup();
+    assert_eq!(found.len(), 1, "{strategy}: {found:?}");
+    found[0]
+}
+
+#[test]
+fn compare_counts_the_rays_of_the_tiles_that_each_strategy_cuts() {
+    let folder = folder();
+    let run = |options: &str| {
+        let arguments =
+            format!("compare --size 24x16 --threads 2 --tile 10 {options} --time-limit 1 --json a.json");
+        let table = rayweave(folder.path(), &arguments).expect_success();
+        (table, json(&folder.path().join("a.json")))
+    };
+
+    let (table, object) = run("--antialiasing 2");
+    let needed = lattice_points(2, &[(24, 16)]);
+    // Two rows of tiles, 10 and 6 pixels high, each of 10, 10 and 4 pixels.
+    let tiles = [(10, 10), (10, 10), (4, 10), (10, 6), (10, 6), (4, 6)];
+    let by_tiles = (lattice_points(2, &tiles), lattice_points(2, &tiles) - needed);
+    assert_eq!(rays(&object, "sequential"), by_tiles);
+    assert_eq!(rays(&object, "tile-queue"), by_tiles);
+    let by_pixels = (24 * 16 * 25, 24 * 16 * 25 - needed);
+    assert_eq!(rays(&object, "rayon-pixels"), by_pixels);
+    assert_eq!(rays(&object, "mutex-image"), by_pixels);
+    assert!(table.contains("  5.6/px +21.3 %  ") && table.contains("  25.0/px +438 %  "), "{table}");
+
+    for (options, a_pixel) in [
+        ("--antialiasing 2 --share-samples off", 25),
+        ("--antialiasing 2 --sampling importance", 13),
+        ("--antialiasing 0", 1),
+    ] {
+        let (_, object) = run(options);
+        for strategy in rayweave_registry::available() {
+            assert_eq!(rays(&object, strategy.name()), (24 * 16 * a_pixel, 0), "{options}");
+        }
+    }
+}
+
+#[test]
+fn compare_does_not_count_adaptive_samples() {
+    let folder = folder();
+    let arguments = "compare --size 8x8 --antialiasing 2 --adaptive on --strategy sequential --time-limit 1 --json a.json";
+    let table = rayweave(folder.path(), arguments).expect_success();
+    assert!(table.contains("antialiasing 2 (adaptive)") && !table.contains("/px"), "{table}");
+    let object = json(&folder.path().join("a.json"));
+    assert_eq!(object["adaptive"], true);
+    assert_eq!(object["results"][0].get("primary_rays"), Some(&Value::Null));
+}
+
+#[test]
+fn compare_says_how_the_picture_is_computed() {
+    let folder = folder();
+    let run = |options: &str| {
+        let arguments = format!(
+            "compare --size 8x8 --threads 1 --strategy sequential --time-limit 1 {options} --json a.json"
+        );
+        let table = rayweave(folder.path(), &arguments).expect_success();
+        let object = json(&folder.path().join("a.json"));
+        let line = table.lines().find(|line| line.starts_with("computed: ")).expect("the line").to_owned();
+        (line, ["lanes", "share_samples", "search"].map(|key| object[key].clone()))
+    };
+    let (line, keys) = run("--antialiasing 1 --lanes 8 --precision f32");
+    assert_eq!(line, "computed: 8 rays side by side, samples shared, search auto");
+    assert_eq!(keys, [Value::from(8), Value::from(true), Value::from("auto")]);
+    let (line, keys) =
+        run("--antialiasing 1 --lanes 8 --precision f64 --share-samples off --search exhaustive");
+    assert_eq!(line, "computed: 4 rays side by side, samples not shared, search exhaustive");
+    assert_eq!(keys, [Value::from(4), Value::from(false), Value::from("exhaustive")]);
+    // Its mirrors scatter neighbours.
+    let imbalance = repository().join("scenes/imbalance.toml");
+    let (line, _) = run(&format!("{} --antialiasing 1", imbalance.display()));
+    assert_eq!(line, "computed: rays one by one, samples shared, search auto");
+}
+
+#[test]
+fn compare_sets_shared_samples_beside_their_own() {
+    let folder = folder();
+    let arguments = "compare --size 24x16 --antialiasing 2 --threads 2 --share-samples both --time-limit 1 --json a.json --csv a.csv";
+    let text = rayweave(folder.path(), arguments).expect_success();
+    let place = |part: &str| text.find(part).unwrap_or_else(|| panic!("{part}: {text}"));
+    let (shared, unshared) = (place("samples shared"), place("samples not shared"));
+    assert!(shared < unshared && unshared < place("sharing: without it sequential takes "), "{text}");
+    assert_eq!(text.matches("(control)").count(), 2, "{text}");
+
+    let object = json(&folder.path().join("a.json"));
+    let other = &object["unshared"];
+    assert_eq!((&object["share_samples"], &other["share_samples"]), (&true.into(), &false.into()));
+    assert_eq!((&object["schema"], &other["schema"]), (&1.into(), &1.into()));
+    // The same picture, in the same rounds.
+    assert_eq!((&object["digest"], &object["rounds"]), (&other["digest"], &other["rounds"]));
+    assert!(object["sharing_speedup"]["median"].as_f64().expect("a number") > 0.0);
+    assert_eq!(rays(other, "tile-queue"), (24 * 16 * 25, 0));
+    let tile = lattice_points(2, &[(24, 16)]);
+    assert_eq!(rays(&object, "tile-queue"), (tile, 0), "one tile is the whole picture");
+    let results = |object: &Value| object["results"].as_array().expect("a list").len();
+    assert_eq!(results(&object), 2 + rayweave_registry::available().len() - 1);
+    let csv = fs::read_to_string(folder.path().join("a.csv")).expect("the file");
+    assert_eq!(csv.lines().count(), 1 + results(&object) + results(other));
+}
+
+#[test]
+fn without_a_command_it_compares() {
+    let folder = folder();
+    let strategy = rayweave_registry::recommended().name();
+    let table =
+        rayweave(folder.path(), &format!("--size 16x16 --threads 2 --strategy {strategy} --time-limit 1"))
+            .expect_success();
+    assert!(table.contains(strategy) && table.contains("(control)"), "{table}");
+}
+
+#[test]
+fn a_baseline_says_what_has_changed() {
+    let folder = folder();
+    let small = "compare --size 4x4 --antialiasing 0 --strategy tile-queue --threads 1 --time-limit 1";
+    rayweave(folder.path(), &format!("{small} --json old.json --markdown old.md")).expect_success();
+    let text =
+        rayweave(folder.path(), &format!("{small} --baseline old.json --json new.json")).expect_success();
+    assert!(text.contains("changes since the baseline") && !text.contains("ANOTHER PICTURE"), "{text}");
+    let changes = &json(&folder.path().join("new.json"))["changes"];
+    assert!(changes[1]["time"]["low"].as_f64() > Some(0.0) && changes[2].is_null(), "{changes}");
+    let markdown = fs::read_to_string(folder.path().join("old.md")).expect("the file");
+    assert!(markdown.contains("\n| tile-queue | 1 | "), "{markdown}");
+
+    for (arguments, expected) in [
+        ("--baseline missing.json", "missing.json: cannot be a baseline: "),
+        ("--baseline old.md", "old.md: cannot be a baseline: not the JSON of a comparison"),
+        (
+            "--baseline old.json --json old.json",
+            "old.json: cannot be written: it is named twice, or is the input",
+        ),
+        ("--baseline old.json --share-samples both --antialiasing 1", "--baseline needs one table"),
+    ] {
+        let message = rayweave(folder.path(), &format!("{small} {arguments}")).expect_refusal();
+        assert!(message.contains(expected), "{arguments}: {message}");
+    }
+}
+
+#[test]
+fn scenes_stand_beside_each_other() {
+    let folder = folder();
+    let small = "compare --size 8x8 --strategy tile-queue --threads 2 --time-limit 1 --json a.json";
+    let text =
+        rayweave(&repository(), "compare --size 8x8 --strategy tile-queue --time-limit 1 --scenes all")
+            .expect_success();
+    for scene in ["balanced", "columns", "corner", "free", "tile"] {
+        assert!(text.lines().any(|line| line.starts_with(&format!("{scene}: "))), "{scene}: {text}");
+    }
+    let two = format!("{},{}", program::scene("report.toml"), program::scene("loads/free.toml"));
+    rayweave(folder.path(), &format!("{small} --scenes {two}")).expect_success();
+    let comparisons = &json(&folder.path().join("a.json"))["comparisons"];
+    assert!(comparisons[0]["scene"].as_str().is_some_and(|scene| scene.ends_with("report.toml")));
+    assert!(comparisons[1]["results"].is_array() && comparisons[2].is_null());
+
+    for (arguments, expected) in [
+        ("--scenes all", "go to the repository's folder"),
+        ("--scenes missing.toml", "missing.toml: cannot be read"),
+        ("a.toml --scenes b.toml", "name all scenes there"),
+        ("--scenes a.toml --share-samples both", "on or off"),
+        ("--scenes a.json", "named twice"),
+    ] {
+        let message = rayweave(folder.path(), &format!("{small} {arguments}")).expect_refusal();
+        assert!(message.contains(expected), "{arguments}: {message}");
+    }
+}

@@ -1,0 +1,221 @@
+//! What has changed since an earlier comparison.
+
+use super::Report;
+use crate::json::Ratio;
+use crate::style;
+use rayweave_measure::compare::{Role, Row};
+use rayweave_measure::statistics::{median_ratio_interval, ratios};
+use rayweave_measure::{Comparison, Interval};
+use serde::{Deserialize, Serialize};
+
+/// What is read of an earlier comparison's JSON.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Baseline {
+    schema: u32,
+    digest: String,
+    results: Vec<Earlier>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+struct Earlier {
+    strategy: String,
+    threads: usize,
+    control: bool,
+    samples_ns: Vec<u64>,
+}
+
+/// A row now and then.
+pub(super) struct Change<'a> {
+    row: &'a Row,
+    /// Its time now over its time then.
+    time: Option<Interval>,
+    /// The same of its time over the reference's in the same run: what changed the whole machine cancels.
+    relative: Option<Interval>,
+}
+
+/// The same for other programs.
+#[derive(Serialize)]
+pub(super) struct Object {
+    strategy: &'static str,
+    threads: usize,
+    time: Option<Ratio>,
+    relative_time: Option<Ratio>,
+    verdict: &'static str,
+}
+
+impl Baseline {
+    /// From the JSON of a comparison.
+    ///
+    /// # Errors
+    ///
+    /// It is none, or of another schema.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let baseline: Self =
+            serde_json::from_str(text).map_err(|e| format!("not the JSON of a comparison: {e}"))?;
+        if baseline.schema != super::json::SCHEMA {
+            let (theirs, ours) = (baseline.schema, super::json::SCHEMA);
+            return Err(format!("its schema is {theirs}, and this program reads {ours}"));
+        }
+        Ok(baseline)
+    }
+
+    /// Of each row but the control.
+    pub(super) fn changes<'a>(&self, comparison: &'a Comparison) -> Vec<Change<'a>> {
+        let reference = comparison.rows.first().map(Row::render_ns).unwrap_or_default();
+        let earlier_reference = self.results.first().map(|result| &result.samples_ns[..]).unwrap_or_default();
+        let rows = comparison.rows.iter().filter(|row| row.role != Role::Control);
+        rows.map(|row| {
+            let now = row.figures.map(|_| row.render_ns()).unwrap_or_default();
+            let then = self.samples_of(row);
+            let relative = ratios(&now, &reference);
+            Change {
+                row,
+                time: median_ratio_interval(&floats(&now), &floats(then)),
+                relative: median_ratio_interval(&relative, &ratios(then, earlier_reference)),
+            }
+        })
+        .collect()
+    }
+
+    fn samples_of(&self, row: &Row) -> &[u64] {
+        let of_row = |earlier: &&Earlier| {
+            !earlier.control && earlier.threads == row.threads && earlier.strategy == row.strategy
+        };
+        self.results.iter().find(of_row).map(|earlier| &earlier.samples_ns[..]).unwrap_or_default()
+    }
+}
+
+fn floats(samples: &[u64]) -> Vec<f64> {
+    samples.iter().map(|&ns| ns as f64).collect()
+}
+
+impl Change<'_> {
+    /// By the time relative to the reference's; of the reference, whose is always 1, by its time.
+    fn verdict(&self) -> &'static str {
+        let decisive = if self.row.role == Role::Reference { self.time } else { self.relative };
+        match decisive {
+            None => "not in both",
+            Some(interval) if interval.contains(1.0) => "as before",
+            Some(interval) if interval.low > 1.0 => "slower",
+            Some(_) => "faster",
+        }
+    }
+
+    pub(super) fn object(&self) -> Object {
+        Object {
+            strategy: self.row.strategy,
+            threads: self.row.threads,
+            time: self.time.map(Ratio::from),
+            relative_time: self.relative.map(Ratio::from),
+            verdict: self.verdict(),
+        }
+    }
+}
+
+const HEADER: [&str; 5] = [
+    "strategy",
+    "threads",
+    "time now / then\n[95 % interval]",
+    "the same, relative\nto the reference",
+    "verdict",
+];
+
+/// The table below the table.
+pub(super) fn text(baseline: &Baseline, report: &Report<'_>) -> String {
+    let cell = |interval: Option<Interval>| interval.map_or_else(|| "-".to_owned(), exact);
+    let changes = baseline.changes(report.comparison);
+    let rows = changes.iter().map(|change| {
+        let Change { row, time, relative } = change;
+        let [time, relative] = [*time, *relative].map(cell);
+        [row.strategy.to_owned(), row.threads.to_string(), time, relative, change.verdict().to_owned()]
+    });
+    let mut lines = vec![
+        "changes since the baseline".to_owned(),
+        String::new(),
+        style::table(HEADER, rows, 1..=3),
+        String::new(),
+        "Two runs differ by drift, too: the verdict is by what is relative to the reference of the same run."
+            .to_owned(),
+        "Chance alone changes one row in twenty.".to_owned(),
+    ];
+    if baseline.digest != report.comparison.digest.to_string() {
+        lines.push("The baseline drew ANOTHER PICTURE: that may be all of the difference.".to_owned());
+    }
+    lines.join("\n")
+}
+
+/// A change of a percent is to be seen.
+fn exact(Interval { median, low, high }: Interval) -> String {
+    format!("{median:.3} [{low:.3}, {high:.3}]")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{comparison, sample, with_report};
+    use super::*;
+
+    /// The made-up comparison, its reference and control `reference` and its pool `pool` times as slow.
+    fn slowed(reference: f64, pool: f64) -> Comparison {
+        let mut comparison = comparison();
+        let noise = [0.99, 1.0, 1.01, 1.0, 0.995, 1.005, 1.0, 1.0];
+        for (row, (ns, factor)) in
+            comparison.rows.iter_mut().zip([(2e9, reference), (2e9, reference), (1e9, pool)])
+        {
+            row.samples = noise.map(|noise| sample((ns * factor * noise) as u64)).to_vec();
+        }
+        comparison
+    }
+
+    fn baseline() -> Baseline {
+        Baseline::parse(&with_report(&slowed(1.0, 1.0), |report| report.json())).expect("a comparison")
+    }
+
+    fn verdicts(now: &Comparison) -> Vec<(&'static str, &'static str)> {
+        let baseline = baseline();
+        let changes = baseline.changes(now);
+        changes.iter().map(|change| (change.row.strategy, change.verdict())).collect()
+    }
+
+    /// Catches a machine that is slower taken for a strategy that is, and a ratio that is upside down.
+    #[test]
+    fn what_is_slower_and_what_is_the_machine() {
+        let rest = [("queue", "not in both"), ("many, \"too\" many", "not in both")];
+        let expect = |now: &Comparison, reference, pool| {
+            let [queue, many] = rest;
+            assert_eq!(verdicts(now), [("sequential", reference), ("pool", pool), queue, many]);
+        };
+        expect(&slowed(1.0, 1.0), "as before", "as before");
+        expect(&slowed(1.0, 1.1), "as before", "slower");
+        expect(&slowed(1.0, 0.9), "as before", "faster");
+        expect(&slowed(1.1, 1.1), "slower", "as before");
+    }
+
+    #[test]
+    fn changes_for_people_and_programs() {
+        let (now, baseline) = (slowed(1.0, 1.1), baseline());
+        let text = with_report(&now, |report| Report { baseline: Some(&baseline), ..*report }.table());
+        let line = text.lines().find(|line| line.starts_with("pool") && line.ends_with("slower"));
+        assert!(line.is_some_and(|line| line.contains("1.100 [1.0")), "{text}");
+        assert!(!text.contains("ANOTHER PICTURE"), "{text}");
+        let json = with_report(&now, |report| Report { baseline: Some(&baseline), ..*report }.json());
+        let value: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+        let pool = &value["changes"][1];
+        assert_eq!((&pool["strategy"], &pool["verdict"]), (&"pool".into(), &"slower".into()));
+        assert!((pool["time"]["median"].as_f64().expect("a number") - 1.1).abs() < 1e-6, "{pool}");
+        assert_eq!(value["changes"].as_array().map(Vec::len), Some(4), "the control has no place here");
+
+        let other = Baseline { digest: "of something else".to_owned(), ..baseline };
+        let text = with_report(&now, |report| Report { baseline: Some(&other), ..*report }.table());
+        assert!(text.contains("ANOTHER PICTURE"), "{text}");
+    }
+
+    #[test]
+    fn what_is_no_baseline_is_refused() {
+        let refused = |text: &str| Baseline::parse(text).expect_err("no baseline");
+        assert!(refused("{}").starts_with("not the JSON of a comparison: "));
+        assert!(refused("[1]").starts_with("not the JSON of a comparison: "));
+        let later = r#"{"schema": 2, "digest": "", "results": []}"#;
+        assert_eq!(refused(later), "its schema is 2, and this program reads 1");
+        assert!(Baseline::parse(&later.replace('2', "1")).is_ok());
+    }
+}
