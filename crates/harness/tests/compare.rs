@@ -265,7 +265,7 @@ fn a_baseline_says_what_has_changed() {
             "--baseline old.json --json old.json",
             "old.json: cannot be written: it is named twice, or is the input",
         ),
-        ("--baseline old.json --share-samples both --antialiasing 1", "--baseline needs one table"),
+        ("--baseline old.json --share-samples both", "--baseline needs one table"),
     ] {
         let message = rayweave(folder.path(), &format!("{small} {arguments}")).expect_refusal();
         assert!(message.contains(expected), "{arguments}: {message}");

@@ -151,7 +151,7 @@ fn median_in_place(sample: &mut [f64]) -> Option<f64> {
     if sample.is_empty() {
         return None;
     }
-    let even = sample.len() % 2 == 0;
+    let even = sample.len().is_multiple_of(2);
     let (below, &mut upper, _) = sample.select_nth_unstable_by(middle, f64::total_cmp);
     let lower = below.iter().copied().max_by(f64::total_cmp).filter(|_| even).unwrap_or(upper);
     // The mean of two equal values is that value, bit for bit, only when it is not computed.

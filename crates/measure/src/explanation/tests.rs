@@ -63,7 +63,7 @@ impl Renderer for Obedience {
 
 /// With two threads each, in three rounds.
 fn explain(strategies: &[&dyn Strategy]) -> Result<Explanation, ExplainError> {
-    let protocol = Protocol { min_rounds: 3, max_rounds: 3, budget: Duration::ZERO, seed: 1 };
+    let protocol = Protocol { min_rounds: 3, max_rounds: 3, budget: Duration::ZERO, goal: None, seed: 1 };
     let reference = &Obedience::AllOfThem;
     let experiment = Experiment { work: &Grey, size: (5, 4), tile: SIDE, reference, protocol };
     experiment.run(strategies, NonZeroUsize::new(2).expect("not 0"), |_| ())
