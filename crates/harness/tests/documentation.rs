@@ -39,8 +39,9 @@ fn commands(document: &str) -> Vec<String> {
 
 /// Small pictures do: what is tested is that the command is understood and succeeds.
 fn small(arguments: &str) -> String {
-    let takes_size =
-        ["render", "check", "compare", "error", "explain", "-"].iter().any(|word| arguments.starts_with(word));
+    let takes_size = ["render", "check", "compare", "error", "explain", "-"]
+        .iter()
+        .any(|word| arguments.starts_with(word));
     if arguments.starts_with("error") {
         // Each of its pictures takes thousands of rays a pixel.
         format!("{} --size 4x3", arguments.replace("--size 60x60", ""))
