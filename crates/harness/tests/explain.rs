@@ -11,7 +11,7 @@ const CAUSES: [&str; 6] = ["redundant", "slowdown", "dispatch", "contention", "i
 #[test]
 fn explain_writes_what_it_measured_of_every_strategy() {
     let folder = folder();
-    let names: Vec<&str> = rayweave_registry::STRATEGIES.iter().map(|strategy| strategy.name()).collect();
+    let names: Vec<&str> = rayweave_registry::available().iter().map(|strategy| strategy.name()).collect();
     let arguments = format!(
         "explain --size 40x30 --threads 2 --tile 8 --strategy {} --json a.json --trace a.trace.json --pictures drawn",
         names.join(",")

@@ -1,13 +1,12 @@
 //! `rayweave overhead`: what strategies cost beside their work.
 
-use crate::options::{all_threads, distinct, parse_strategy, parse_threads};
+use crate::options::{all_threads, chosen, parse_strategy, parse_threads};
 use crate::output::PendingFile;
 use crate::{Outcome, print, progress};
 use clap::Args;
 use rayweave_core::Strategy;
 use rayweave_measure::overhead::Overhead;
 use rayweave_measure::{Machine, Protocol};
-use rayweave_registry::STRATEGIES;
 use rayweave_report::overhead::Report;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -35,8 +34,7 @@ const STEPS: f64 = 1000.0;
 
 pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let json = arguments.json.as_deref().map(PendingFile::create).transpose()?;
-    let strategies =
-        distinct(if arguments.strategy.is_empty() { STRATEGIES } else { &arguments.strategy }, |s| s.name());
+    let strategies = chosen(&arguments.strategy);
     let overhead = Overhead {
         reference: rayweave_registry::reference(),
         strategies: &strategies,

@@ -1,14 +1,15 @@
 //! `rayweave predict`: what more threads would make of a picture.
 
 use crate::input::Input;
-use crate::options::{SceneOptions, TileOption, all_threads, distinct, parse_strategy, parse_thread_counts};
+use crate::options::{
+    SceneOptions, TileOption, all_threads, chosen, distinct, parse_strategy, parse_thread_counts,
+};
 use crate::output::{PendingFile, distinct_files};
 use crate::{Outcome, print, progress};
 use clap::Args;
 use rayweave_core::Strategy;
 use rayweave_measure::forecast::{Question, Stage};
 use rayweave_measure::{Machine, Protocol};
-use rayweave_registry::STRATEGIES;
 use rayweave_report::forecast::Report;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -47,8 +48,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let svg = arguments.svg.as_deref().map(PendingFile::create).transpose()?;
     let input = Input::load(arguments.scene.as_deref(), &arguments.options)?;
     let tile = arguments.tile.of(input.width, input.height)?;
-    let strategies =
-        distinct(if arguments.strategy.is_empty() { STRATEGIES } else { &arguments.strategy }, |s| s.name());
+    let strategies = chosen(&arguments.strategy);
     let mut threads = arguments.threads.concat();
     threads.sort_unstable();
     threads.dedup();

@@ -172,7 +172,8 @@ fn the_trace_keeps_the_rules_of_its_format() {
                 slices.entry(thread).or_default().push((begin, begin + duration));
             }
             "M" => {
-                names.entry(thread).or_default().push((name, event["args"]["name"].as_str().expect("a name")))
+                let given = event["args"]["name"].as_str().expect("a name");
+                names.entry(thread).or_default().push((name, given));
             }
             other => panic!("{other}: {event}"),
         }
