@@ -216,9 +216,9 @@ fn a_control_that_differs_from_itself_is_told() {
 /// Catches a disturbance that only the figures show, and a goal that is said to be met.
 #[test]
 fn what_is_to_be_doubted_is_told() {
-    let line = |noise: &Noise| super::noise::text(noise);
-    let disturbed = Noise { foreign: Some(Duration::from_secs(5)), throttled: Some(3), ..noise() };
-    let told = "noise: others had 25.3 % of the machine; 0.1 s of it other machines on the same host; stopped 3 times \
+    let line = |noise: &Noise| noise::text(noise);
+    let disturbed = Noise { foreign: Some(Duration::from_millis(4950)), throttled: Some(3), ..noise() };
+    let told = "noise: others had 25.0 % of the machine; 0.1 s of it other machines on the same host; stopped 3 times \
                 by the group's limit; 34 involuntary switches; 2400 to 3600 MHz.\nDISTURBED: measure again when the \
                 machine is quiet.";
     assert_eq!(line(&disturbed), told);
