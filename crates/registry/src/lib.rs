@@ -17,7 +17,6 @@ pub static STRATEGIES: &[&dyn Strategy] = &[
     &rayweave_tile_queue::TileQueue,
     &rayweave_work_stealing::WorkStealing,
     &rayweave_paralight_tiles::ParalightTiles,
-    &rayweave_orx_parallel_tiles::OrxParallelTiles,
     &rayweave_openmp::STATIC,
     &rayweave_openmp::DYNAMIC,
     &rayweave_openmp::GUIDED,

@@ -1,9 +1,7 @@
 //! `rayweave predict`: what more threads would make of a picture.
 
 use crate::input::Input;
-use crate::options::{
-    SceneOptions, TileOption, all_threads, chosen, distinct, parse_strategy, parse_thread_counts,
-};
+use crate::options::{SceneOptions, TileOption, all_threads, chosen, parse_strategy, parse_thread_counts};
 use crate::output::{PendingFile, distinct_files};
 use crate::{Outcome, print, progress};
 use clap::Args;
