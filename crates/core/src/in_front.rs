@@ -20,8 +20,9 @@ pub(crate) fn in_front(scene: &Scene, roundoff: f64) -> Cow<'_, Scene> {
     // From `center` it extends `radius` in any direction.
     let reached = |center: DVec3, radius: f64| {
         let reach = forward.abs().dot(center.abs() + eye.abs()) + radius;
-        // NaN, of numbers too large for a sum, is reached.
-        !(height(center) + radius < lowest - MARGIN * roundoff * reach)
+        // NaN, of numbers too large for a sum, is not behind.
+        let behind = height(center) + radius < lowest - MARGIN * roundoff * reach;
+        !behind
     };
     let spheres = |sphere: &Sphere| reached(sphere.center, sphere.radius);
     let triangles = |triangle: &Triangle| triangle.vertices.iter().any(|&v| reached(v, 0.0));

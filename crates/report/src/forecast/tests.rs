@@ -1,4 +1,5 @@
 use super::*;
+use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule};
 use rayweave_core::{Image, ThreadsStart};
 use rayweave_measure::compare::{Role, Row};
 use rayweave_measure::forecast::{Curve, Point};
@@ -13,6 +14,7 @@ fn wrong() -> Row {
         threads: 1,
         role: Role::Contender,
         threads_start: ThreadsStart::Render,
+        rule: Rule { piece: Piece::Tile, dealing: Dealing::Equal, delivery: Delivery::Locked },
         identical: false,
         digest: Some(Image::new(1, 1).expect("a picture").digest()),
         error: None,
@@ -50,6 +52,7 @@ fn forecast() -> Forecast {
             digest: Image::new(1, 1).expect("a picture").digest(),
             rounds: 6,
             seed: 1,
+            goal: None,
         },
     }
 }
