@@ -19,7 +19,8 @@ fn is_positive(value: &Value) -> bool {
 fn overhead_has_a_row_a_strategy() {
     let folder = folder();
     let strategies = ["sequential", rayweave_registry::recommended().name()];
-    let arguments = format!("overhead --strategy {} --threads 2 --json a.json", strategies.join(","));
+    let arguments =
+        format!("overhead --strategy {} --threads 2 --time-limit 1 --json a.json", strategies.join(","));
     let table = rayweave(folder.path(), &arguments).expect_success();
     for word in strategies.iter().chain(&["METG(50 %)", "break-even", "ns a piece", "machine: "]) {
         assert!(table.contains(word), "{word}: {table}");

@@ -1,6 +1,6 @@
 //! `rayweave overhead`: what strategies cost beside their work.
 
-use crate::options::{all_threads, chosen, parse_strategy, parse_threads};
+use crate::options::{all_threads, chosen, parse_seconds, parse_strategy, parse_threads};
 use crate::output::PendingFile;
 use crate::{Outcome, print, progress};
 use clap::Args;
@@ -20,6 +20,9 @@ pub struct Arguments {
     /// Number of computing threads [default: what the machine and its quota allow]
     #[arg(long, value_name = "N", value_parser = parse_threads)]
     threads: Option<NonZeroUsize>,
+    /// Begin no round after 6 that would end later than this [default: 20]
+    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
+    time_limit: Option<Duration>,
     /// Write the result as JSON
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -39,7 +42,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
         reference: rayweave_registry::reference(),
         strategies: &strategies,
         threads: arguments.threads.unwrap_or_else(all_threads),
-        protocol: PROTOCOL,
+        protocol: Protocol { budget: arguments.time_limit.unwrap_or(PROTOCOL.budget), ..PROTOCOL },
     };
     let bar = progress::bar(STEPS as u64);
     let study = overhead.run(|strategy, fraction| {
