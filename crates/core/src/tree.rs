@@ -168,8 +168,9 @@ impl<S: Scalar> Tree<S> {
                     let far = u32::from(!heading.backward[axis as usize]);
                     let (near, far) = (node.first + 1 - far, node.first + far);
                     let children = [&self.nodes[near as usize], &self.nodes[far as usize]];
-                    let reaching = children.map(|child| wanted & slabs.reach(&child.bounds, limit));
-                    match reaching.map(L::Mask::any) {
+                    let reach = |child: &Node<S>| wanted & slabs.reach(&child.bounds, limit);
+                    let reaching = [reach(children[0]), reach(children[1])];
+                    match [reaching[0].any(), reaching[1].any()] {
                         [true, behind] => {
                             (node, reached) = (children[0], reaching[0]);
                             if behind {
@@ -245,7 +246,8 @@ impl<L: Lane> Slabs<L> {
             let side_at = L::splat(bounds.0[self.sides[axis][side] % 8]);
             (side_at - self.origin[axis][side]) * self.inverse[axis]
         };
-        let [x, y, z] = [0, 1, 2].map(|axis| (at(axis, 0), at(axis, 1)));
+        // Written out: a `map` over an array is not always inlined.
+        let (x, y, z) = ((at(0, 0), at(0, 1)), (at(1, 0), at(1, 1)), (at(2, 0), at(2, 1)));
         let crossed = x.0.max(y.0).max(z.0).le(x.1.min(y.1).min(z.1));
         crossed & L::literal(0.0).le(z.1) & z.0.le(limit)
     }

@@ -53,7 +53,8 @@ impl<L: Lane> Aim<L> {
     #[inline(always)]
     fn project(&self, v: Vector<L::Scalar>) -> [L; 3] {
         let coordinates = v.to_array();
-        let [x, y, z] = [0, 1, 2].map(|i| L::splat(coordinates[self.order[i]]) - self.origin[i]);
+        let from_origin = |i: usize| L::splat(coordinates[self.order[i]]) - self.origin[i];
+        let (x, y, z) = (from_origin(0), from_origin(1), from_origin(2));
         [x - self.shear[0] * z, y - self.shear[1] * z, z]
     }
 }
@@ -90,7 +91,9 @@ impl<S: Scalar> Triangle<S> {
     #[inline(always)]
     pub(crate) fn intersect<L: Lane<Scalar = S>>(&self, ray: &Ray<L>, aim: &Aim<L>, wanted: L::Mask) -> L {
         let zero = L::literal(0.0);
-        let [a, b, c] = self.vertices.map(|v| aim.project(v));
+        // Written out: a `map` over an array is not always inlined.
+        let [a, b, c] = self.vertices;
+        let (a, b, c) = (aim.project(a), aim.project(b), aim.project(c));
         let edge = |[px, py, _]: [L; 3], [qx, qy, _]: [L; 3]| sign_of_difference(px, qy, py, qx);
         let (u, v, w) = (edge(b, c), edge(c, a), edge(a, b));
         let front = zero.le(u) & zero.le(v) & zero.le(w);
