@@ -46,13 +46,22 @@ impl PendingFile {
 pub fn distinct_files(paths: &[&Option<PathBuf>]) -> Result<(), String> {
     let mut seen: Vec<PathBuf> = Vec::new();
     for path in paths.iter().filter_map(|path| path.as_deref()) {
-        let file = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        let file = place(path);
         if seen.contains(&file) {
-            return Err(format!("{}: cannot be written: it is named twice, or is the input", path.display()));
+            return Err(format!(
+                "{}: is named twice: nothing may be written over what is read or written too",
+                path.display()
+            ));
         }
         seen.push(file);
     }
     Ok(())
+}
+
+/// The same for every way to name a file, whether it is there or not yet.
+fn place(path: &Path) -> PathBuf {
+    let folder = || Some(fs::canonicalize(folder_of(path)).ok()?.join(path.file_name()?));
+    fs::canonicalize(path).ok().or_else(folder).unwrap_or_else(|| path.to_owned())
 }
 
 fn cannot<T>(path: &Path, reason: &str) -> Result<T, String> {

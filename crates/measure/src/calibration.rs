@@ -6,7 +6,7 @@ use crate::statistics::lower_quartile;
 use crate::synthetic::Synthetic;
 use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule};
 use rayweave_core::{Renderer, Strategy};
-use rayweave_predict::{Access, Overheads};
+use rayweave_predict::{Access, Overheads, simulate};
 use std::num::NonZeroUsize;
 
 /// Times that everything is rendered; the lower quartile counts.
@@ -49,10 +49,10 @@ pub fn calibrate(
 struct Sheets {
     columns: Columns,
     single: Sheet,
-    /// A long piece.
-    alone: Sheet,
-    /// One for each thread.
-    together: Sheet,
+    /// A long piece, and one twice as long.
+    alone: [Sheet; 2],
+    /// One for each thread, and so too.
+    together: [Sheet; 2],
     /// A load that is spread evenly.
     spread: Sheet,
     /// The same load in the latter half of the pieces.
@@ -68,8 +68,8 @@ impl Sheets {
         Ok(Self {
             columns: Columns::new()?,
             single: Sheet::column(1, 0)?,
-            alone: Sheet::column(1, long)?,
-            together: Sheet::column(threads, long)?,
+            alone: [Sheet::column(1, long)?, Sheet::column(1, 2 * long)?],
+            together: [Sheet::column(threads, long)?, Sheet::column(threads, 2 * long)?],
             spread: Sheet::column(pieces, steps(ns / 2.0))?,
             late: Sheet::new(Synthetic(move |_, y| if y < pieces / 2 { 0 } else { late }), 1, pieces)?,
         })
@@ -80,8 +80,8 @@ impl Sheets {
             single: self.single.time(one)?,
             columns_one: self.columns.time(one)?,
             columns_all: self.columns.time(all)?,
-            alone: self.alone.time(one)?,
-            together: self.together.time(all)?,
+            alone: [self.alone[0].time(one)?, self.alone[1].time(one)?],
+            together: [self.together[0].time(all)?, self.together[1].time(all)?],
             spread: self.spread.time(all)?,
             late: self.late.time(all)?,
         })
@@ -94,8 +94,8 @@ struct Times {
     single: f64,
     columns_one: [f64; 2],
     columns_all: [f64; 2],
-    alone: f64,
-    together: f64,
+    alone: [f64; 2],
+    together: [f64; 2],
     spread: f64,
     late: f64,
 }
@@ -109,8 +109,8 @@ impl Times {
             single: of(|times| times.single),
             columns_one: [of(|times| times.columns_one[0]), of(|times| times.columns_one[1])],
             columns_all: [of(|times| times.columns_all[0]), of(|times| times.columns_all[1])],
-            alone: of(|times| times.alone),
-            together: of(|times| times.together),
+            alone: [of(|times| times.alone[0]), of(|times| times.alone[1])],
+            together: [of(|times| times.together[0]), of(|times| times.together[1])],
             spread: of(|times| times.spread),
             late: of(|times| times.late),
         }
@@ -131,9 +131,9 @@ fn overheads(rule: Rule, threads: usize, times: &Times) -> Overheads {
     let overheads = Overheads {
         start: times.single,
         // Whoever begins later ends later.
-        next_start: (times.together - times.alone).max(0.0) / others,
+        next_start: (without_pieces(times.together) - without_pieces(times.alone)).max(0.0) / others,
         piece: one,
-        steal: if steals { (times.late - times.spread).max(0.0) } else { 0.0 },
+        steal: if steals { price_of_theft(rule, threads, times.late - times.spread) } else { 0.0 },
         ..Overheads::default()
     };
     let access =
@@ -148,6 +148,26 @@ fn overheads(rule: Rule, threads: usize, times: &Times) -> Overheads {
     }
 }
 
+/// What a rendering takes besides its pieces, from the time of one and of another whose pieces are twice as long: threads
+/// that slow each other down lengthen the pieces, not this.
+fn without_pieces([single, twice]: [f64; 2]) -> f64 {
+    2.0 * single - twice
+}
+
+/// What a theft costs, by how much longer the late load takes than the one that is spread: less what it would take
+/// longer if thefts cost nothing, and by how much each nanosecond of a theft delays the end. Both are simulated.
+fn price_of_theft(rule: Rule, threads: usize, longer: f64) -> f64 {
+    let (pieces, ns) = STOLEN;
+    let late: Vec<f64> = (0..pieces).map(|piece| if piece < pieces / 2 { 0.0 } else { ns }).collect();
+    let spread = vec![ns / 2.0; pieces as usize];
+    let time = |pieces: &[f64], steal| {
+        simulate(rule, threads, pieces, &Overheads { steal, ..Overheads::default() }).time
+    };
+    let delay = time(&late, 1.0) - time(&late, 0.0);
+    let free = time(&late, 0.0) - time(&spread, 0.0);
+    (longer - free).max(0.0) / delay.max(1.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -160,8 +180,8 @@ mod tests {
             single: 7.0,
             columns_one: [5.0, 5.0 + 10.0 * PIECES],
             columns_all: [5.0, 5.0 + all * PIECES],
-            alone: 200.0,
-            together: 206.0,
+            alone: [200.0, 390.0],
+            together: [216.0, 416.0],
             spread: 300.0,
             late: 303.0,
         }
@@ -176,7 +196,9 @@ mod tests {
     fn what_is_shared_takes_what_threads_do_not_speed_up() {
         let plain = Overheads { start: 7.0, next_start: 3.0, piece: 10.0, ..Overheads::default() };
         assert_eq!(of(Dealing::Equal, Delivery::InPlace, 14.0), plain);
-        assert_eq!(of(Dealing::Stealing, Delivery::InPlace, 6.0), Overheads { steal: 3.0, ..plain });
+        let steals = Rule { piece: Piece::Row, dealing: Dealing::Stealing, delivery: Delivery::InPlace };
+        let steal = price_of_theft(steals, 3, 3.0);
+        assert_eq!(of(Dealing::Stealing, Delivery::InPlace, 6.0), Overheads { steal, ..plain });
         let take = Access { hold: 20.0, handover: 8.0 };
         let shared = Dealing::Shared { chunk: 2 };
         assert_eq!(of(shared, Delivery::InPlace, 14.0), Overheads { piece: 0.0, take, ..plain });
@@ -190,10 +212,26 @@ mod tests {
     #[test]
     fn bands_have_no_dispatch_and_one_thread_nobody_to_steal_from() {
         let rule = |piece| Rule { piece, dealing: Dealing::Halving, delivery: Delivery::InPlace };
-        let faster = Times { together: 150.0, ..times(10.0) };
+        let faster = Times { together: [150.0, 300.0], ..times(10.0) };
         let expected = Overheads { start: 7.0, piece: 10.0, ..Overheads::default() };
         assert_eq!(overheads(rule(Piece::Pixel), 1, &faster), expected);
         assert_eq!(overheads(rule(Piece::Band), 1, &faster), Overheads { piece: 0.0, ..expected });
+    }
+
+    /// Catches pieces that cannot be dealt out evenly taken for the price of a theft, and several thefts for one.
+    #[test]
+    fn what_a_theft_costs_is_found_again() {
+        let (pieces, ns) = STOLEN;
+        let late: Vec<f64> = (0..pieces).map(|piece| if piece < pieces / 2 { 0.0 } else { ns }).collect();
+        let spread = vec![ns / 2.0; pieces as usize];
+        for (dealing, threads) in [(Dealing::Stealing, 2), (Dealing::Stealing, 5), (Dealing::Halving, 2)] {
+            let rule = Rule { piece: Piece::Tile, dealing, delivery: Delivery::InPlace };
+            let time = |pieces: &[f64], steal| {
+                simulate(rule, threads, pieces, &Overheads { steal, ..Overheads::default() }).time
+            };
+            let found = price_of_theft(rule, threads, time(&late, 100.0) - time(&spread, 0.0));
+            assert!((found - 100.0).abs() < 1.0, "{dealing:?}, {threads} threads: {found}");
+        }
     }
 
     #[test]

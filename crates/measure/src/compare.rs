@@ -249,6 +249,8 @@ impl Protocol {
     /// Whether every row that will have figures is as precise as was wished for.
     fn is_precise(&self, tables: &[Vec<Row>]) -> bool {
         let precise = |rows: &Vec<Row>, goal| rows.iter().all(|row| row.is_precise(&rows[0], goal));
-        self.goal.is_some_and(|goal| tables.iter().all(|rows| precise(rows, goal)))
+        // Without its reference a table gets no figures.
+        let mut running = tables.iter().filter(|rows| rows[0].holds());
+        self.goal.is_some_and(|goal| running.all(|rows| precise(rows, goal)))
     }
 }

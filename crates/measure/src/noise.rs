@@ -9,8 +9,8 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// The length of a tick in `/proc/stat`: a hundred a second, whatever the kernel's own.
-const TICK: Duration = Duration::from_millis(10);
+/// The length of a tick in `/proc/stat`, in milliseconds: a hundred a second, whatever the kernel's own.
+const TICK_MS: u64 = 10;
 
 /// The share of the machine that others may use before a measurement counts as disturbed.
 const QUIET: f64 = 0.02;
@@ -122,10 +122,11 @@ impl Times {
     fn of(stat: &str) -> Option<Self> {
         let line = stat.lines().find_map(|line| line.strip_prefix("cpu "))?;
         let ticks = line.split_whitespace().map(|number| number.parse().ok());
-        let ticks: Vec<u32> = ticks.collect::<Option<_>>()?;
+        let ticks: Vec<u64> = ticks.collect::<Option<_>>()?;
         let [user, nice, system, _, _, irq, softirq, steal, ..] = ticks[..] else { return None };
-        let busy = [user, nice, system, irq, softirq].map(|ticks| TICK * ticks).iter().sum();
-        Some(Self { busy, stolen: TICK * steal })
+        let time = |ticks: u64| Duration::from_millis(ticks.saturating_mul(TICK_MS));
+        let busy = [user, nice, system, irq, softirq].map(time).iter().sum();
+        Some(Self { busy, stolen: time(steal) })
     }
 }
 
@@ -160,8 +161,8 @@ mod tests {
 
     #[test]
     fn times_of_all_processors() {
-        let stat = "cpu  100 20 30 4000 500 6 7 8 9 10\ncpu0 1 2 3 4 5 6 7 8 9 10\n";
-        let expected = Times { busy: TICK * (100 + 20 + 30 + 6 + 7), stolen: TICK * 8 };
+        let stat = "cpu  100 20 30 40000000000 500 6 7 8 9 10\ncpu0 1 2 3 4 5 6 7 8 9 10\n";
+        let expected = Times { busy: Duration::from_millis(1630), stolen: Duration::from_millis(80) };
         assert_eq!(Times::of(stat), Some(expected));
         for nonsense in ["", "cpu0 1 2 3 4 5 6 7 8", "cpu 1 2 3", "cpu a b c d e f g h"] {
             assert_eq!(Times::of(nonsense), None, "{nonsense}");
@@ -202,13 +203,14 @@ mod tests {
     #[cfg(target_os = "linux")]
     #[test]
     fn our_own_time_is_not_foreign() {
-        let watch = Watch::start();
+        let stat =
+            || Times::of(&fs::read_to_string("/proc/stat").expect("Linux")).expect("its first line").busy;
+        let (busy_before, watch) = (stat(), Watch::start());
         let before = Usage::of_this_process().expect("Linux").cpu;
         while Usage::of_this_process().expect("Linux").cpu < before + Duration::from_millis(100) {}
-        let noise = watch.finish(1);
-        let busy = noise.foreign.expect("Linux");
-        // At most what all processors could have done in that time, less what we did, and the ticks' coarseness.
-        let all = noise.wall * u32::try_from(crate::Machine::here().logical_cores).expect("few");
-        assert!(busy + Duration::from_millis(100) <= all + 4 * TICK, "{busy:?} of {all:?}");
+        let (foreign, busy) = (watch.finish(1).foreign.expect("Linux"), stat() - busy_before);
+        // All that was done, less what we did; ticks are coarse.
+        let coarseness = Duration::from_millis(4 * TICK_MS);
+        assert!(foreign + Duration::from_millis(100) <= busy + coarseness, "{foreign:?} of {busy:?}");
     }
 }

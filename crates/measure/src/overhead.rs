@@ -177,6 +177,8 @@ impl Overhead<'_> {
         let mut renderer = of_pixels(strategy, threads).map_err(Failure::Preparing)?;
         let dispatch_all = Columns::slope(sheets.columns.time(&mut *renderer).map_err(failed)?);
         let tasks = times(&mut sheets.tasks, &mut *renderer)?;
+        // Their threads would be there already: OpenMP keeps one pool for each calling thread.
+        drop((one, renderer));
         let begin = Instant::now();
         let mut renderer =
             attempt(|| strategy.prepare(Plan { threads, tile: TILE })).map_err(Failure::Preparing)?;

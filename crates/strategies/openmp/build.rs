@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 const LOOPS: &str = "src/loops.c";
+const HEADER: &str = "src/loops.h";
 const PROBE: &str = "src/probe.c";
 const FLAG: &str = "-fopenmp";
 
@@ -13,8 +14,9 @@ const FLAG: &str = "-fopenmp";
 const LIBRARIES: [&str; 2] = ["gomp", "omp"];
 
 fn main() {
-    println!("cargo::rerun-if-changed={LOOPS}");
-    println!("cargo::rerun-if-changed={PROBE}");
+    for file in [LOOPS, HEADER, PROBE] {
+        println!("cargo::rerun-if-changed={file}");
+    }
     println!("cargo::rustc-check-cfg=cfg(openmp)");
     match compile() {
         Ok(()) => println!("cargo::rustc-cfg=openmp"),

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 /// What a copy of the workspace needs to be built.
-const PARTS: [&str; 7] =
-    ["Cargo.toml", "Cargo.lock", "crates", "benches", "tests", "scenes", "CONTRIBUTING.md"];
+const PARTS: [&str; 8] =
+    [".cargo", "Cargo.toml", "Cargo.lock", "crates", "benches", "tests", "scenes", "CONTRIBUTING.md"];
 
 const STRATEGY: &str = "dealt-rows";
 
@@ -80,22 +80,35 @@ fn target_folder() -> PathBuf {
 fn share_dependencies() {
     let [from, to] = ["", "contributing"].map(|part| target_folder().join(part).join("debug"));
     for part in ["build", "deps", ".fingerprint"] {
-        link(&from.join(part), &to.join(part));
+        share(&from.join(part), &to.join(part));
     }
 }
 
-fn link(from: &Path, to: &Path) {
-    if from.is_dir() {
-        fs::create_dir_all(to).expect("a folder");
-        for entry in fs::read_dir(from).expect("a folder") {
-            let entry = entry.expect("an entry");
-            if !entry.file_name().to_string_lossy().contains("rayweave") {
-                link(&entry.path(), &to.join(entry.file_name()));
-            }
+/// Files of one folder in another, but for our own: by a second name where nobody writes, which is not so of the
+/// fingerprints.
+fn share(from: &Path, to: &Path) {
+    let Ok(entries) = fs::read_dir(from) else { return };
+    fs::create_dir_all(to).expect("a folder");
+    for entry in entries.map(|entry| entry.expect("an entry")) {
+        let (from, to) = (entry.path(), to.join(entry.file_name()));
+        if entry.file_name().to_string_lossy().contains("rayweave") || to.is_file() {
+            continue;
         }
-    } else if !to.exists() {
-        fs::hard_link(from, to).expect("a file with two names");
+        if from.is_dir() {
+            share(&from, &to);
+        } else if from.components().any(|part| part.as_os_str() == ".fingerprint") {
+            copy_with_time(&from, &to);
+        } else {
+            fs::hard_link(&from, &to).expect("a file with two names");
+        }
     }
+}
+
+/// Cargo tells by the time whether a file is still good.
+fn copy_with_time(from: &Path, to: &Path) {
+    fs::copy(from, to).expect("a copy");
+    let time = fs::metadata(from).and_then(|file| file.modified()).expect("a time");
+    fs::File::options().write(true).open(to).and_then(|file| file.set_modified(time)).expect("the same time");
 }
 
 /// What the workspace's `rayweave` prints, built in this environment; without a warning.

@@ -75,7 +75,7 @@ pub fn run(scene: Option<&Path>, options: &Options) -> Result<Outcome, String> {
     if options.baseline.is_some() && !single {
         return Err("--baseline needs one table: a single scene, and --share-samples on or off".to_owned());
     }
-    let files = Files::create(scene, options)?;
+    let files = Files::create(&scenes, options)?;
     let baseline = options.baseline.as_deref().map(read_baseline).transpose()?;
     // All of them before the first is measured: a mistake in the last is told at once.
     let inputs = scenes.iter().map(|scene| load(scene.as_deref(), options));
@@ -144,11 +144,9 @@ struct Files {
 }
 
 impl Files {
-    fn create(scene: Option<&Path>, options: &Options) -> Result<Self, String> {
-        let Options { json, csv, markdown, baseline, scenes, .. } = options;
-        let scenes: Vec<Option<PathBuf>> = scenes.iter().cloned().map(Some).collect();
-        let scene = scene.map(Path::to_owned);
-        let named = [&scene, json, csv, markdown, baseline].into_iter().chain(&scenes);
+    fn create(scenes: &[Option<PathBuf>], options: &Options) -> Result<Self, String> {
+        let Options { json, csv, markdown, baseline, .. } = options;
+        let named = [json, csv, markdown, baseline].into_iter().chain(scenes);
         distinct_files(&named.collect::<Vec<_>>())?;
         let create = |path: &Option<PathBuf>| path.as_deref().map(PendingFile::create).transpose();
         Ok(Self { json: create(json)?, csv: create(csv)?, markdown: create(markdown)? })

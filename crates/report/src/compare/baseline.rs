@@ -21,6 +21,8 @@ struct Earlier {
     strategy: String,
     threads: usize,
     control: bool,
+    /// None of rows that failed or gave another picture.
+    median_ns: Option<f64>,
     samples_ns: Vec<u64>,
 }
 
@@ -79,7 +81,8 @@ impl Baseline {
 
     fn samples_of(&self, row: &Row) -> &[u64] {
         let of_row = |earlier: &&Earlier| {
-            !earlier.control && earlier.threads == row.threads && earlier.strategy == row.strategy
+            let alike = earlier.threads == row.threads && earlier.strategy == row.strategy;
+            alike && !earlier.control && earlier.median_ns.is_some()
         };
         self.results.iter().find(of_row).map(|earlier| &earlier.samples_ns[..]).unwrap_or_default()
     }
@@ -134,7 +137,8 @@ pub(super) fn text(baseline: &Baseline, report: &Report<'_>) -> String {
         String::new(),
         style::table(HEADER, rows, 1..=3),
         String::new(),
-        "Two runs differ by drift, too: the verdict is by what is relative to the reference of the same run."
+        "Two runs differ by drift, too: the verdict is by what is relative to the reference of the same run, but the\n\
+         reference's own by its time."
             .to_owned(),
         "Chance alone changes one row in twenty.".to_owned(),
     ];

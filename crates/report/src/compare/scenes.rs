@@ -2,7 +2,7 @@
 
 use super::{Report, csv, json};
 use crate::{machine, style};
-use rayweave_core::strategy::Dealing;
+use rayweave_core::strategy::{Dealing, Piece};
 use rayweave_measure::compare::{Role, Row};
 use rayweave_measure::{Interval, Load};
 
@@ -109,21 +109,21 @@ fn why(report: &Report<'_>, load: &Load) -> String {
     let threads = report.comparison.rows.iter().map(|row| row.threads).max().unwrap_or(1);
     let others = report.comparison.rows.iter().filter(|row| row.role != Role::Control);
     let as_good = others.filter(|row| speedup(row).is_some_and(|other| other.high >= won.low)).count() - 1;
-    let mut parts = vec![format!(
-        "{}: {} ({}) is first, with {as_good} more within the intervals",
-        name(report),
-        winner.strategy,
-        dealing(winner.rule.dealing)
-    )];
+    let mut parts = vec![if winner.role == Role::Reference {
+        format!("{}: no strategy pays, {} is first", name(report), winner.strategy)
+    } else {
+        let (strategy, dealing) = (winner.strategy, dealing(winner.rule.dealing));
+        format!("{}: {strategy} ({dealing}) is first, with {as_good} more within the intervals", name(report))
+    }];
     let uneven = load.unevenness(threads);
     parts.push(if uneven < EVEN {
         format!("the cost is even, equal shares of tiles differ by {:.0} %", (uneven - 1.0) * 100.0)
     } else {
-        let equal =
-            best(report, |row| row.rule.dealing == Dealing::Equal && row.threads > 1).and_then(speedup);
+        let equal_tiles = |row: &Row| row.rule.dealing == Dealing::Equal && row.rule.piece == Piece::Tile;
+        let equal = best(report, |row| equal_tiles(row) && row.threads == threads).and_then(speedup);
         let measured = equal.map(|equal| format!(", {:.2} was measured", equal.median)).unwrap_or_default();
         let most = threads as f64 / uneven;
-        format!("static shares lose: max over mean cost is {uneven:.2}, so at most {most:.2}{measured}")
+        format!("equal shares of tiles: max over mean cost is {uneven:.2}, so at most {most:.2}{measured}")
     });
     let dearest = load.dearest_tile();
     if dearest * threads as f64 > 1.0 {
@@ -160,8 +160,12 @@ mod tests {
 
     fn with_scenes(read: impl FnOnce(&ScenesReport<'_>) -> String) -> String {
         let (mut even, mut corner) = (comparison(), comparison());
-        even.rows[2].rule.dealing = Dealing::Equal;
-        corner.rows[2].rule.dealing = Dealing::Equal;
+        for comparison in [&mut even, &mut corner] {
+            // Of the largest number of threads, which the bound is for.
+            comparison.rows[2].threads = comparison.rows.iter().map(|row| row.threads).max().expect("rows");
+            let rule = &mut comparison.rows[2].rule;
+            (rule.dealing, rule.piece) = (Dealing::Equal, Piece::Tile);
+        }
         // In the corner the pool loses to the reference.
         let figures = corner.rows[2].figures.as_mut().expect("figures");
         figures.speedup = Interval { median: 0.9, low: 0.85, high: 0.95 };
@@ -201,8 +205,8 @@ mod tests {
         // 9000 threads and a tile more than that: the first range is the dear tile alone, 3/4 of all.
         assert_eq!(
             line("corner:"),
-            "corner: sequential (the next piece to whoever is free) is first, with 0 more within the intervals; \
-             static shares lose: max over mean cost is 6750.00, so at most 1.33, 0.90 was measured; one tile has \
+            "corner: no strategy pays, sequential is first; \
+             equal shares of tiles: max over mean cost is 6750.00, so at most 1.33, 0.90 was measured; one tile has \
              75 % of the cost, so whole tiles allow at most 1.33; all pixels take 5.00 ms, so starting threads and \
              dealing out count."
         );

@@ -79,7 +79,7 @@ fn steal<'a>(own: usize, deque: &Worker<Tile<'a>>, stealers: &[Stealer<Tile<'a>>
     let (before, after) = stealers.split_at(own);
     after.iter().skip(1).chain(before).find_map(|victim| {
         loop {
-            match victim.steal_batch_and_pop(deque) {
+            match victim.steal_batch_with_limit_and_pop(deque, usize::MAX) {
                 Steal::Success(tile) => return Some(tile),
                 Steal::Empty => return None,
                 // Somebody else was at it.
