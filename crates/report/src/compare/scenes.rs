@@ -221,7 +221,7 @@ mod tests {
         let csv = with_scenes(|scenes| scenes.csv());
         assert_eq!(csv.lines().count(), 1 + 2 * 5);
         let markdown = with_scenes(|scenes| scenes.markdown());
-        assert_eq!(markdown.matches("| pool | 2 | 1026 |").count(), 2, "{markdown}");
+        assert_eq!(markdown.matches("| pool | 9000 | 1026 |").count(), 2, "{markdown}");
         assert!(markdown.contains("| sequential (control) | 1 | 2010 | 1.00 [0.96, 1.06] | 100 % | 2512 |"));
         assert!(markdown.contains("| queue | 2 | wrong picture | | | |"), "{markdown}");
         assert!(markdown.contains("| many, \"too\" many | 9000 | failed | | | |"), "{markdown}");
