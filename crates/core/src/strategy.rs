@@ -70,6 +70,14 @@ pub enum ThreadsStart {
     Render,
 }
 
+impl ThreadsStart {
+    /// The number of threads that compute where `asked` are asked for.
+    #[must_use]
+    pub fn computing_threads(self, asked: NonZeroUsize) -> NonZeroUsize {
+        if self == Self::Never { NonZeroUsize::MIN } else { asked }
+    }
+}
+
 /// How a strategy deals out the work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rule {

@@ -91,12 +91,6 @@ impl Children {
         share_samples: bool,
         tile: NonZeroU32,
     ) -> Result<Self, String> {
-        if let Some(path) = path.filter(|path| !path.is_file()) {
-            return Err(format!(
-                "{}: is read anew for every sample, and this can be read only once: use a regular file",
-                path.display()
-            ));
-        }
         let program = env::current_exe().map_err(|e| format!("cannot find this program's own file: {e}"))?;
         let share_samples = if share_samples { SharingOption::On } else { SharingOption::Off };
         let words = SceneOptions { share_samples, ..*options }.words();

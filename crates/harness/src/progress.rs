@@ -2,6 +2,7 @@
 
 use indicatif::{ProgressBar, ProgressStyle};
 use rayweave_core::{Tile, Work};
+use std::borrow::Cow;
 use std::time::Duration;
 
 /// A bar on standard error, if that is a terminal.
@@ -9,6 +10,30 @@ pub fn bar(total: u64) -> ProgressBar {
     let style = ProgressStyle::with_template("{bar:32} {percent:>3} %  {msg}  {eta} left")
         .unwrap_or_else(|_| ProgressStyle::default_bar());
     ProgressBar::new(total).with_style(style)
+}
+
+/// A bar of the share that is done. It is taken away with this.
+pub struct Share(ProgressBar);
+
+/// Of a share's bar.
+const STEPS: f64 = 1000.0;
+
+impl Share {
+    pub fn new() -> Self {
+        Self(bar(STEPS as u64))
+    }
+
+    /// `fraction`, 0 to 1, is done, and `message` goes on.
+    pub fn show(&self, fraction: f64, message: impl Into<Cow<'static, str>>) {
+        self.0.set_message(message);
+        self.0.set_position((fraction * STEPS) as u64);
+    }
+}
+
+impl Drop for Share {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+    }
 }
 
 /// Work that tells a bar how many pixels are done.

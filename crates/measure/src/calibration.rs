@@ -157,15 +157,19 @@ fn without_pieces([single, twice]: [f64; 2]) -> f64 {
 /// What a theft costs, by how much longer the late load takes than the one that is spread: less what it would take
 /// longer if thefts cost nothing, and by how much each nanosecond of a theft delays the end. Both are simulated.
 fn price_of_theft(rule: Rule, threads: usize, longer: f64) -> f64 {
+    let late = |steal| simulated_late(rule, threads, steal);
+    (longer - late(0.0)).max(0.0) / (late(1.0) - late(0.0)).max(1.0)
+}
+
+/// How much longer than the load that is spread the late one takes where a theft costs `steal`.
+fn simulated_late(rule: Rule, threads: usize, steal: f64) -> f64 {
     let (pieces, ns) = STOLEN;
     let late: Vec<f64> = (0..pieces).map(|piece| if piece < pieces / 2 { 0.0 } else { ns }).collect();
     let spread = vec![ns / 2.0; pieces as usize];
     let time = |pieces: &[f64], steal| {
         simulate(rule, threads, pieces, &Overheads { steal, ..Overheads::default() }).time
     };
-    let delay = time(&late, 1.0) - time(&late, 0.0);
-    let free = time(&late, 0.0) - time(&spread, 0.0);
-    (longer - free).max(0.0) / delay.max(1.0)
+    time(&late, steal) - time(&spread, 0.0)
 }
 
 #[cfg(test)]
@@ -221,15 +225,9 @@ mod tests {
     /// Catches pieces that cannot be dealt out evenly taken for the price of a theft, and several thefts for one.
     #[test]
     fn what_a_theft_costs_is_found_again() {
-        let (pieces, ns) = STOLEN;
-        let late: Vec<f64> = (0..pieces).map(|piece| if piece < pieces / 2 { 0.0 } else { ns }).collect();
-        let spread = vec![ns / 2.0; pieces as usize];
         for (dealing, threads) in [(Dealing::Stealing, 2), (Dealing::Stealing, 5), (Dealing::Halving, 2)] {
             let rule = Rule { piece: Piece::Tile, dealing, delivery: Delivery::InPlace };
-            let time = |pieces: &[f64], steal| {
-                simulate(rule, threads, pieces, &Overheads { steal, ..Overheads::default() }).time
-            };
-            let found = price_of_theft(rule, threads, time(&late, 100.0) - time(&spread, 0.0));
+            let found = price_of_theft(rule, threads, simulated_late(rule, threads, 100.0));
             assert!((found - 100.0).abs() < 1.0, "{dealing:?}, {threads} threads: {found}");
         }
     }

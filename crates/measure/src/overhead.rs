@@ -13,7 +13,7 @@ use crate::statistics::{Interval, median, median_interval};
 use crate::synthetic;
 use curve::{break_even, metg};
 use rayweave_core::strategy::Piece;
-use rayweave_core::{Plan, Renderer, Strategy, ThreadsStart};
+use rayweave_core::{Plan, Renderer, Strategy};
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::time::Instant;
 use thiserror::Error;
@@ -162,7 +162,7 @@ impl Overhead<'_> {
     }
 
     fn threads_of(&self, strategy: &dyn Strategy) -> NonZeroUsize {
-        if strategy.threads_start() == ThreadsStart::Never { NonZeroUsize::MIN } else { self.threads }
+        strategy.threads_start().computing_threads(self.threads)
     }
 
     /// Everything once, for one strategy.

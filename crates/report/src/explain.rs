@@ -17,6 +17,7 @@ use rayweave_measure::efficiency::Cause;
 use rayweave_measure::explanation::{Explanation, Row};
 use rayweave_measure::recorder::Cost;
 use rayweave_measure::timeline::{Lane, Timeline};
+use serde::Serialize;
 
 /// An explanation with everything that is needed to read it.
 #[derive(Clone, Copy)]
@@ -86,7 +87,8 @@ impl Report<'_> {
     }
 }
 
-/// What one thread did in a rendering.
+/// What one thread did in a rendering; in JSON by these names.
+#[derive(Serialize)]
 struct Thread<'a> {
     name: Option<&'a str>,
     /// Of its first piece.

@@ -30,6 +30,11 @@ pub(crate) fn interval(Interval { median, low, high }: Interval) -> String {
     format!("{median:.2} [{low:.2}, {high:.2}]")
 }
 
+/// As in `1.841 [1.794, 1.903]`: where a change of a percent is to be seen.
+pub(crate) fn precise_interval(Interval { median, low, high }: Interval) -> String {
+    format!("{median:.3} [{low:.3}, {high:.3}]")
+}
+
 /// A number with three digits, or with all before its point if these are more.
 pub(crate) fn significant(value: f64) -> String {
     let decimals = match value.abs() {

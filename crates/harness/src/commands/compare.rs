@@ -7,7 +7,8 @@ use crate::options::{
     parse_seconds, parse_strategy, parse_threads,
 };
 use crate::output::{PendingFile, distinct_files};
-use crate::{Outcome, print, progress};
+use crate::progress::Share;
+use crate::{Outcome, print};
 use clap::Args;
 use rayweave_core::{Arithmetic, Execution, Strategy};
 use rayweave_measure::compare::{Comparison, Entry, Executor};
@@ -188,9 +189,6 @@ impl Measured {
     }
 }
 
-/// Steps of the progress bar.
-const STEPS: f64 = 1000.0;
-
 /// Whether samples are shared, for each way to compute the picture.
 fn ways(options: &Options) -> &'static [bool] {
     match options.scene_options.share_samples {
@@ -210,6 +208,12 @@ fn load(scene: Option<&Path>, options: &Options) -> Result<Input, String> {
             "--share-samples both: without a lattice, or with an adaptive one, there is no choice".to_owned()
         );
     }
+    if let Some(path) = scene.filter(|path| !path.is_file()) {
+        return Err(format!(
+            "{}: is read anew for every sample, and this can be read only once: use a regular file",
+            path.display()
+        ));
+    }
     input.picture()?;
     options.tile.of(input.width, input.height)?;
     Ok(input)
@@ -224,17 +228,16 @@ fn measure(scene: Option<&Path>, input: Input, options: &Options, scenes: usize)
     let mut executors: Vec<&mut dyn Executor> =
         children.iter_mut().map(|children| children as &mut dyn Executor).collect();
 
-    let bar = progress::bar(STEPS as u64);
+    let bar = Share::new();
     let watch = Watch::start();
     let reference = rayweave_registry::reference();
     let protocol = protocol(options, ways.len(), scenes);
     let comparisons = protocol.run_together(reference, &entries(options), &mut executors, |progress| {
         // Drawn here and nowhere else: between the timed spans.
-        bar.set_message(format!("{}, threads: {}", progress.strategy, progress.threads));
-        bar.set_position((progress.fraction * STEPS) as u64);
+        bar.show(progress.fraction, format!("{}, threads: {}", progress.strategy, progress.threads));
     });
     let noise = watch.finish(Machine::here().logical_cores);
-    bar.finish_and_clear();
+    drop(bar);
     let comparisons = comparisons.map_err(|e| e.to_string())?;
     let subjects = ways.iter().map(|&share_samples| subject(&input, share_samples, tile)).collect();
     Ok(Measured { input, subjects, comparisons, noise })

@@ -4,7 +4,8 @@ use crate::input;
 use crate::options::{all_threads, parse_psnr, parse_size};
 use crate::output::{PendingFile, distinct_files};
 use crate::picture::Format;
-use crate::{Outcome, print, progress};
+use crate::progress::Share;
+use crate::{Outcome, print};
 use clap::Args;
 use rayweave_accuracy::flip;
 use rayweave_accuracy::tradeoff::{EXACT, Experiment, Setting, Study, timed};
@@ -56,9 +57,6 @@ const PROTOCOL: Protocol =
 /// The side of a tile of an untimed picture: small, because the pictures are.
 const TILE: NonZeroU32 = NonZeroU32::new(8).expect("8 is not 0");
 
-/// Steps of the progress bar.
-const STEPS: f64 = 1000.0;
-
 pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let files = [&arguments.json, &arguments.csv, &arguments.svg];
     distinct_files(&[&arguments.scene, &arguments.json, &arguments.csv, &arguments.svg])?;
@@ -70,18 +68,12 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let scene = file.scene;
     let size = arguments.size.map_or_else(|| default_size(&scene, file.image), Ok)?;
 
-    let bar = progress::bar(STEPS as u64);
-    bar.set_message("reference");
+    let bar = Share::new();
+    bar.show(0.0, "reference");
     let experiment =
         Experiment { scene: &scene, size, strategy: rayweave_registry::reference(), protocol: PROTOCOL };
-    let study = experiment.run(
-        |work| render(work, size),
-        |fraction| {
-            bar.set_message("settings");
-            bar.set_position((fraction * STEPS) as u64);
-        },
-    );
-    bar.finish_and_clear();
+    let study = experiment.run(|work| render(work, size), |fraction| bar.show(fraction, "settings"));
+    drop(bar);
     let study = study.map_err(|e| format!("{name}: {e}"))?;
 
     let (width, height) = size;

@@ -4,7 +4,8 @@ use crate::input::Input;
 use crate::options::{SceneOptions, TileOption, all_threads, distinct, parse_strategy, parse_threads};
 use crate::output::{PendingFile, distinct_files};
 use crate::picture::Format;
-use crate::{Outcome, print, progress};
+use crate::progress::Share;
+use crate::{Outcome, print};
 use clap::Args;
 use rayweave_core::{Area, Strategy, primary_rays};
 use rayweave_measure::explanation::{Experiment, ExplainError};
@@ -47,9 +48,6 @@ const PROTOCOL: Protocol =
 /// The most pixels of a picture: each may be a piece of which a record is kept, three times 40 bytes at the most.
 const MAX_PIXELS: u64 = 1 << 24;
 
-/// Steps of the progress bar.
-const STEPS: f64 = 1000.0;
-
 pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     distinct_files(&[&arguments.scene, &arguments.json, &arguments.trace])?;
     let [json, trace] =
@@ -78,12 +76,12 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
         reference: rayweave_registry::reference(),
         protocol: Protocol { budget: PROTOCOL.budget * strategies.len() as u32, ..PROTOCOL },
     };
-    let bar = progress::bar(STEPS as u64);
+    let bar = Share::new();
     // Drawn between the timed spans.
     let explained = experiment.run(&strategies, arguments.threads.unwrap_or_else(all_threads), |fraction| {
-        bar.set_position((fraction * STEPS) as u64);
+        bar.show(fraction, "");
     });
-    bar.finish_and_clear();
+    drop(bar);
     let explanation = match explained {
         Ok(explanation) => explanation,
         Err(error @ ExplainError::Different { .. }) => {

@@ -2,7 +2,8 @@
 
 use crate::options::{all_threads, chosen, parse_seconds, parse_strategy, parse_threads};
 use crate::output::PendingFile;
-use crate::{Outcome, print, progress};
+use crate::progress::Share;
+use crate::{Outcome, print};
 use clap::Args;
 use rayweave_core::Strategy;
 use rayweave_measure::overhead::Overhead;
@@ -32,9 +33,6 @@ pub struct Arguments {
 const PROTOCOL: Protocol =
     Protocol { min_rounds: 6, max_rounds: 20, budget: Duration::from_secs(20), goal: None, seed: 1 };
 
-/// Steps of the progress bar.
-const STEPS: f64 = 1000.0;
-
 pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let json = arguments.json.as_deref().map(PendingFile::create).transpose()?;
     let strategies = chosen(&arguments.strategy);
@@ -44,12 +42,11 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
         threads: arguments.threads.unwrap_or_else(all_threads),
         protocol: Protocol { budget: arguments.time_limit.unwrap_or(PROTOCOL.budget), ..PROTOCOL },
     };
-    let bar = progress::bar(STEPS as u64);
+    let bar = Share::new();
     let study = overhead.run(|strategy, fraction| {
-        bar.set_message(strategy.to_owned());
-        bar.set_position((fraction * STEPS) as u64);
+        bar.show(fraction, strategy.to_owned());
     });
-    bar.finish_and_clear();
+    drop(bar);
     let (study, machine) = (study.map_err(|e| e.to_string())?, Machine::here());
     let report = Report { study: &study, machine: &machine };
     print(&format!("{}\n", report.table()))?;

@@ -3,7 +3,8 @@
 use crate::input::Input;
 use crate::options::{SceneOptions, TileOption, all_threads, chosen, parse_strategy, parse_thread_counts};
 use crate::output::{PendingFile, distinct_files};
-use crate::{Outcome, print, progress};
+use crate::progress::Share;
+use crate::{Outcome, print};
 use clap::Args;
 use rayweave_core::Strategy;
 use rayweave_measure::forecast::{Question, Stage};
@@ -37,9 +38,6 @@ pub struct Arguments {
 /// What one value of the list stands for.
 type Counts = Vec<NonZeroUsize>;
 
-/// Steps of the progress bar.
-const STEPS: f64 = 1000.0;
-
 pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     distinct_files(&[&arguments.scene, &arguments.json, &arguments.svg])?;
     let json = arguments.json.as_deref().map(PendingFile::create).transpose()?;
@@ -61,16 +59,16 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
         available: all_threads(),
         protocol: Protocol::default(),
     };
-    let bar = progress::bar(STEPS as u64);
+    let bar = Share::new();
     let forecast = question.answer(|stage, fraction| {
-        bar.set_message(match stage {
+        let message = match stage {
             Stage::Pieces => "pieces, one by one",
             Stage::Overheads => "overheads of threads",
             Stage::Renderings => "renderings",
-        });
-        bar.set_position((fraction * STEPS) as u64);
+        };
+        bar.show(fraction, message);
     });
-    bar.finish_and_clear();
+    drop(bar);
     let forecast = forecast.map_err(|e| format!("{}: {e}", input.name))?;
     let machine = Machine::here();
     let report = Report {

@@ -7,7 +7,7 @@ use crate::picture::Format;
 use crate::progress::Watched;
 use crate::{Outcome, print};
 use clap::Args;
-use rayweave_core::{Analysis, Execution, Plan, Strategy, ThreadsStart, Work};
+use rayweave_core::{Analysis, Execution, Plan, Strategy, Work};
 use rayweave_measure::machine::Machine;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -46,7 +46,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let threads = arguments.threads.unwrap_or_else(all_threads);
     let plan = Plan { threads, tile: arguments.tile.of(input.width, input.height)? };
     // What has no threads of its own computes on one, whatever was asked for.
-    let computing = if strategy.threads_start() == ThreadsStart::Never { NonZeroUsize::MIN } else { threads };
+    let computing = strategy.threads_start().computing_threads(threads);
     let mut picture = input.picture()?;
     let begin = Instant::now();
     let work = input.work(input.width, input.height)?;

@@ -80,7 +80,7 @@ impl Row {
 
     pub(super) fn new(entry: &Entry<'_>, role: Role) -> Self {
         let threads_start = entry.strategy.threads_start();
-        let threads = if threads_start == ThreadsStart::Never { 1 } else { entry.threads.get() };
+        let threads = threads_start.computing_threads(entry.threads).get();
         Self {
             strategy: entry.strategy.name(),
             threads,

@@ -125,7 +125,7 @@ const HEADER: [&str; 5] = [
 
 /// The table below the table.
 pub(super) fn text(baseline: &Baseline, report: &Report<'_>) -> String {
-    let cell = |interval: Option<Interval>| interval.map_or_else(|| "-".to_owned(), exact);
+    let cell = |interval: Option<Interval>| interval.map_or_else(|| "-".to_owned(), style::precise_interval);
     let changes = baseline.changes(report.comparison);
     let rows = changes.iter().map(|change| {
         let Change { row, time, relative } = change;
@@ -146,11 +146,6 @@ pub(super) fn text(baseline: &Baseline, report: &Report<'_>) -> String {
         lines.push("The baseline drew ANOTHER PICTURE: that may be all of the difference.".to_owned());
     }
     lines.join("\n")
-}
-
-/// A change of a percent is to be seen.
-fn exact(Interval { median, low, high }: Interval) -> String {
-    format!("{median:.3} [{low:.3}, {high:.3}]")
 }
 
 #[cfg(test)]

@@ -1,9 +1,9 @@
 //! The comparison for a README.
 
 use super::Report;
-use super::table::milliseconds;
+use super::table::{label, milliseconds};
 use crate::{machine, style};
-use rayweave_measure::compare::{Role, Row};
+use rayweave_measure::compare::Row;
 
 const HEADER: &str = "| strategy | threads | median ms | speed-up [95 % interval] | efficiency | one shot ms |\n\
                       |---|--:|--:|--:|--:|--:|\n";
@@ -17,12 +17,7 @@ pub(super) fn text(report: &Report<'_>) -> String {
 }
 
 fn line(row: &Row) -> String {
-    let name = if row.role == Role::Control {
-        format!("{} (control)", row.strategy)
-    } else {
-        row.strategy.to_owned()
-    };
-    let (name, threads) = (name.replace('|', "\\|"), row.threads);
+    let (name, threads) = (label(row).replace('|', "\\|"), row.threads);
     let Some(figures) = row.figures else {
         let reason = if row.error.is_some() { "failed" } else { "wrong picture" };
         return format!("| {name} | {threads} | {reason} | | | |\n");

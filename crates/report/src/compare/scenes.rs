@@ -1,5 +1,6 @@
 //! Several scenes beside each other: which strategy wins where, and why.
 
+use super::table::label;
 use super::{Report, csv, json};
 use crate::{machine, style};
 use rayweave_core::strategy::{Dealing, Piece};
@@ -68,13 +69,12 @@ impl ScenesReport<'_> {
 
     fn row(&self, number: usize) -> Vec<String> {
         let row = &self.reports[0].comparison.rows[number];
-        let control = if row.role == Role::Control { " (control)" } else { "" };
-        let head = [format!("{}{control}", row.strategy), row.threads.to_string()];
+        let head = [label(row), row.threads.to_string()];
         let cells = self.reports.iter().map(|report| {
             let row = &report.comparison.rows[number];
-            let Some(Interval { median, low, high }) = speedup(row) else { return "failed".to_owned() };
+            let Some(speedup) = speedup(row) else { return "failed".to_owned() };
             let mark = if winner(report).is_some_and(|best| std::ptr::eq(best, row)) { "* " } else { "" };
-            format!("{mark}{median:.2} [{low:.2}, {high:.2}]")
+            format!("{mark}{}", style::interval(speedup))
         });
         head.into_iter().chain(cells).collect()
     }

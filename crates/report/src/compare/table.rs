@@ -3,8 +3,8 @@
 use super::{BothReport, Report, Subject, baseline, noise, search};
 use crate::{machine, style};
 use rayweave_core::{Formulas, Sampling, Search, ThreadsStart};
+use rayweave_measure::Comparison;
 use rayweave_measure::compare::{Rays, Role, Row};
-use rayweave_measure::{Comparison, Interval};
 
 const HEADER: [&str; 10] = [
     "strategy",
@@ -49,10 +49,10 @@ pub(super) fn both(report: &BothReport<'_>) -> String {
     let shared = &report.shared;
     lines.extend(legend(shared.comparison));
     lines.extend(report.gain().map(|gain| {
-        let (reference, Interval { median, low, high }) = (reference(shared.comparison), gain);
         format!(
-            "sharing: without it {reference} takes {median:.2} [{low:.2}, {high:.2}] times as long; both tables are \
-             of the same rounds."
+            "sharing: without it {} takes {} times as long; both tables are of the same rounds.",
+            reference(shared.comparison),
+            style::interval(gain)
         )
     }));
     lines.push(noise::text(shared.noise));
@@ -90,10 +90,15 @@ pub(super) fn heading(Report { subject, comparison, .. }: &Report<'_>) -> String
     )
 }
 
+/// What a row is called.
+pub(super) fn label(row: &Row) -> String {
+    let control = if row.role == Role::Control { " (control)" } else { "" };
+    format!("{}{control}", row.strategy)
+}
+
 fn cells(subject: &Subject, row: &Row) -> [String; HEADER.len()] {
     let figure = |text: Option<String>| text.unwrap_or_else(|| NONE.to_owned());
     let figures = row.figures;
-    let control = if row.role == Role::Control { " (control)" } else { "" };
     let identical = match (&row.error, row.identical) {
         (Some(_), _) => "failed",
         (None, true) => "yes",
@@ -105,7 +110,7 @@ fn cells(subject: &Subject, row: &Row) -> [String; HEADER.len()] {
         ThreadsStart::Render => Some("in the time".to_owned()),
     };
     [
-        format!("{}{control}", row.strategy),
+        label(row),
         row.threads.to_string(),
         figure(figures.map(|f| milliseconds(f.median_ns))),
         figure(figures.and_then(|f| f.one_shot).map(|one_shot| milliseconds(one_shot.median_ns))),
@@ -192,7 +197,6 @@ fn legend(comparison: &Comparison) -> [String; 4] {
 fn control(comparison: &Comparison) -> Option<String> {
     let reference = reference(comparison);
     comparison.control().map(|control| {
-        let Interval { median, low, high } = control;
         let verdict = if control.contains(1.0) {
             "as it should be, 1 is in it.\n\
              That much is order and drift, of one thread; to tell rows apart compare their own intervals."
@@ -200,7 +204,7 @@ fn control(comparison: &Comparison) -> Option<String> {
             "1 is not in it: measure again.\n\
              Chance alone keeps it out of at most one quiet run in twenty."
         };
-        format!("control: {reference} over itself is {median:.3} [{low:.3}, {high:.3}]; {verdict}")
+        format!("control: {reference} over itself is {}; {verdict}", style::precise_interval(control))
     })
 }
 

@@ -39,7 +39,7 @@ struct Entry<'a> {
     recorded_over_plain: Ratio,
     imbalance: f64,
     long_gap_ns: f64,
-    threads_recorded: Vec<ThreadEntry<'a>>,
+    threads_recorded: Vec<Thread<'a>>,
 }
 
 #[derive(Serialize)]
@@ -50,21 +50,6 @@ struct Causes {
     contention: f64,
     imbalance: f64,
     serial: f64,
-}
-
-#[derive(Serialize)]
-struct ThreadEntry<'a> {
-    name: Option<&'a str>,
-    begin_ns: u64,
-    end_ns: u64,
-    busy_ns: u64,
-    between_ns: u64,
-    idle_ns: u64,
-    pieces: usize,
-    pixels: u64,
-    primary_rays: Option<u64>,
-    long_gaps: usize,
-    long_gaps_ns: u64,
 }
 
 pub(super) fn text(report: &Report<'_>) -> String {
@@ -98,7 +83,7 @@ fn entry<'a>(report: &Report<'a>, row: &'a Row) -> Entry<'a> {
         recorded_over_plain: row.recorded.into(),
         imbalance: imbalance(row),
         long_gap_ns: row.long_gap_ns,
-        threads_recorded: Thread::all(row, report.rays).into_iter().map(thread).collect(),
+        threads_recorded: Thread::all(row, report.rays),
     }
 }
 
@@ -110,21 +95,5 @@ fn causes(losses: &Losses) -> Causes {
         contention: losses.to(Cause::Contention),
         imbalance: losses.to(Cause::Imbalance),
         serial: losses.to(Cause::Serial),
-    }
-}
-
-fn thread(thread: Thread<'_>) -> ThreadEntry<'_> {
-    ThreadEntry {
-        name: thread.name,
-        begin_ns: thread.begin_ns,
-        end_ns: thread.end_ns,
-        busy_ns: thread.busy_ns,
-        between_ns: thread.between_ns,
-        idle_ns: thread.idle_ns,
-        pieces: thread.pieces,
-        pixels: thread.pixels,
-        primary_rays: thread.primary_rays,
-        long_gaps: thread.long_gaps,
-        long_gaps_ns: thread.long_gaps_ns,
     }
 }

@@ -2,7 +2,6 @@
 
 use super::{Report, Thread, imbalance, label, name};
 use crate::{machine, style};
-use rayweave_measure::Interval;
 use rayweave_measure::efficiency::Cause;
 use rayweave_measure::explanation::{Explanation, Row};
 
@@ -64,7 +63,7 @@ fn sum(row: &Row) -> String {
 }
 
 fn recording(row: &Row) -> String {
-    format!("recorded renderings take {} times as long as plain ones", precise(row.recorded))
+    format!("recorded renderings take {} times as long as plain ones", style::precise_interval(row.recorded))
 }
 
 /// What each thread does.
@@ -170,8 +169,4 @@ fn plural(count: usize) -> &'static str {
 /// Milliseconds with two places after the point.
 fn ms(ns: f64) -> String {
     format!("{:.2}", ns / 1e6)
-}
-
-fn precise(Interval { median, low, high }: Interval) -> String {
-    format!("{median:.3} [{low:.3}, {high:.3}]")
 }

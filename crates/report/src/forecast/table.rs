@@ -4,7 +4,6 @@ use super::{ASSUMPTIONS, Report};
 use crate::compare::complaint;
 use crate::machine;
 use crate::style;
-use rayweave_measure::Interval;
 use rayweave_measure::forecast::{Curve, Point};
 
 const NONE: &str = "-";
@@ -93,11 +92,9 @@ fn check(curve: &Curve, point: &Point) -> Option<[String; 5]> {
 /// What the predictions were made from.
 fn basis(report: &Report<'_>) -> String {
     let forecast = report.forecast;
-    let slowdowns = forecast.slowdowns.iter().map(|(threads, Interval { median, low, high })| {
-        format!(
-            "{threads} threads that share nothing take {median:.3} [{low:.3}, {high:.3}] times as long as one, each: \
-             used."
-        )
+    let slowdowns = forecast.slowdowns.iter().map(|&(threads, slowdown)| {
+        let slowdown = style::precise_interval(slowdown);
+        format!("{threads} threads that share nothing take {slowdown} times as long as one, each: used.")
     });
     let (predicted, measured) = forecast.reference_ns;
     let reference = measured.map_or_else(String::new, |measured| {
