@@ -148,6 +148,12 @@ impl Comparison {
         intervals.filter(misses).count()
     }
 
+    /// The reference's median time to render, in nanoseconds; `None` without figures.
+    #[must_use]
+    pub fn reference_ns(&self) -> Option<f64> {
+        self.rows.first().and_then(|row| row.figures).map(|figures| figures.median_ns)
+    }
+
     /// What the reference seems to gain on itself: the error of the table.
     #[must_use]
     pub fn control(&self) -> Option<Interval> {

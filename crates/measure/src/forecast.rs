@@ -4,7 +4,8 @@
 //!   comparison.
 //! * In the same rounds [independent](crate::independent) threads draw the whole picture each: so much slower is every
 //!   piece taken to be beside other threads.
-//! * The costs of [pieces](crate::piece_costs) and of [threads](crate::calibration) are measured apart.
+//! * And in the same rounds one thread draws the picture [piece by piece](crate::piece_costs) and times each.
+//! * The costs of [threads](crate::calibration) are measured apart, before.
 //! * From these alone the [simulation](rayweave_predict) predicts all speed-ups. Nothing of it is fitted to the times
 //!   of the strategies.
 
@@ -12,7 +13,7 @@ use crate::calibration::calibrate;
 use crate::compare::{CompareError, Comparison, Entry, Row};
 use crate::independent::Independent;
 use crate::overhead::of_pixels;
-use crate::piece_costs::PieceCosts;
+use crate::piece_costs::{Cut, OneByOne, PieceCosts};
 use crate::schedule::Protocol;
 use crate::statistics::Interval;
 use crate::stopwatch::Stopwatch;
@@ -22,7 +23,12 @@ use rayweave_core::{Strategy, ThreadsStart, Work};
 use rayweave_predict::fit::{amdahl, usl};
 use rayweave_predict::{Law, Overheads, simulate};
 use std::num::{NonZeroU32, NonZeroUsize};
+use std::time::Duration;
 use thiserror::Error;
+
+/// How long each entry renders in a round: it is as few rounds as there is time for, and the quick ones would be told
+/// by too few renderings.
+const TURN: Duration = Duration::from_millis(250);
 
 /// What is predicted.
 #[derive(Clone, Copy)]
@@ -54,8 +60,6 @@ pub struct Forecast {
     pub unavailable: Vec<String>,
     /// How many times as long as alone a thread takes beside others that share nothing with it, by the number of all.
     pub slowdowns: Vec<(usize, Interval)>,
-    /// Of the reference, in nanoseconds: as predicted, and the median of those measured.
-    pub reference_ns: (f64, Option<f64>),
     /// What was measured.
     pub comparison: Comparison,
 }
@@ -97,11 +101,9 @@ impl Point {
 /// What is being done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
-    /// Pieces are timed alone.
-    Pieces,
     /// Threads, locks and counters are timed.
     Overheads,
-    /// Strategies are timed.
+    /// Strategies and pieces are timed.
     Renderings,
 }
 
@@ -134,23 +136,44 @@ impl Question<'_> {
                 Err(reason) => unavailable.push(reason),
             }
         }
-        let kinds: Vec<Piece> = strategies.iter().map(|strategy| strategy.rule().piece).collect();
-        let costs = PieceCosts::measure(self.work, self.size, self.tile, &kinds, |done| {
-            progress(Stage::Pieces, done);
-        })?;
         let overheads =
             calibrate(self.reference, &strategies, self.available, |done| progress(Stage::Overheads, done))
                 .map_err(ForecastError::Strategy)?;
-        let comparison = self.compare(&strategies[1..], |done| progress(Stage::Renderings, done))?;
+        let here: Vec<NonZeroUsize> =
+            self.threads.iter().copied().filter(|threads| *threads <= self.available).collect();
+        let together = here.iter().filter(|threads| **threads != self.available).chain([&self.available]);
+        let several = together.filter(|threads| threads.get() > 1);
+        let independent: Vec<_> = several.map(|&threads| (threads, Independent::default())).collect();
+        let kinds: Vec<Piece> = strategies.iter().map(|strategy| strategy.rule().piece).collect();
+        let pieces: Vec<OneByOne> = Cut::for_pieces(&kinds).into_iter().map(OneByOne::new).collect();
 
-        let slowdowns = slowdowns(&comparison);
+        let timed = strategies[1..]
+            .iter()
+            .flat_map(|&strategy| here.iter().map(move |&threads| Entry { strategy, threads }));
+        let beside = independent.iter().map(|(threads, strategy)| Entry { strategy, threads: *threads });
+        let alone = pieces.iter().map(|strategy| Entry { strategy, threads: NonZeroUsize::MIN });
+        let entries: Vec<Entry<'_>> = timed.chain(beside).chain(alone).collect();
+        let mut stopwatch = Stopwatch::new(self.work, self.size.0, self.size.1, self.tile)?.filling(TURN);
+        let comparison = self
+            .protocol
+            .run(self.reference, &entries, &mut stopwatch, |at| progress(Stage::Renderings, at.fraction))?;
+
+        let reference_ns = comparison.rows.first().map(Row::render_ns).unwrap_or_default();
+        let slowdowns: Vec<(usize, Interval)> = independent
+            .iter()
+            .filter_map(|(threads, independent)| Some((threads.get(), independent.slowdown(&reference_ns)?)))
+            .collect();
+        // Without it no row has figures, and each says why.
+        let reference = comparison.reference_ns().unwrap_or(0.0);
+        let speedup = |pieces: &OneByOne| Some(find(&comparison, pieces.name(), 1)?.figures?.speedup.median);
+        let measured: Vec<_> = pieces.iter().filter_map(|pieces| Some((pieces, speedup(pieces)?))).collect();
+        let costs = PieceCosts::new(&measured, reference);
         let time = |index: usize, threads: usize| {
             let rule = strategies[index].rule();
             let slowdown = slowdown(&slowdowns, threads);
             let pieces = costs.of(rule.piece, threads).into_iter().map(|cost| cost * slowdown);
             simulate(rule, threads, &pieces.collect::<Vec<_>>(), &overheads[index]).time
         };
-        let reference = time(0, 1);
         let curve = |index: usize| {
             let times: Vec<(usize, f64)> =
                 self.threads.iter().map(|threads| (threads.get(), time(index, threads.get()))).collect();
@@ -166,45 +189,12 @@ impl Question<'_> {
             Curve { strategy: name, overheads: overheads[index], points: points.collect(), amdahl, usl }
         };
         let curves = (1..strategies.len()).map(curve).collect();
-        let measured = comparison.rows.first().and_then(|row| row.figures).map(|figures| figures.median_ns);
-        Ok(Forecast { curves, unavailable, slowdowns, reference_ns: (reference, measured), comparison })
-    }
-
-    /// Times the strategies, and independent threads, on the threads that are here.
-    fn compare(
-        &self,
-        strategies: &[&dyn Strategy],
-        mut progress: impl FnMut(f64),
-    ) -> Result<Comparison, ForecastError> {
-        let here: Vec<NonZeroUsize> =
-            self.threads.iter().copied().filter(|threads| *threads <= self.available).collect();
-        let independent = Independent::default();
-        let mut entries: Vec<Entry<'_>> = strategies
-            .iter()
-            .flat_map(|&strategy| here.iter().map(move |&threads| Entry { strategy, threads }))
-            .collect();
-        let together = here.iter().filter(|threads| **threads != self.available).chain([&self.available]);
-        let several = together.filter(|threads| threads.get() > 1);
-        entries.extend(several.map(|&threads| Entry { strategy: &independent, threads }));
-        let (width, height) = self.size;
-        let mut stopwatch = Stopwatch::new(self.work, width, height, self.tile)?;
-        Ok(self.protocol.run(self.reference, &entries, &mut stopwatch, |at| progress(at.fraction))?)
+        Ok(Forecast { curves, unavailable, slowdowns, comparison })
     }
 }
 
 fn find<'a>(comparison: &'a Comparison, strategy: &str, threads: usize) -> Option<&'a Row> {
     comparison.rows.iter().find(|row| (row.strategy, row.threads) == (strategy, threads))
-}
-
-/// From the rows of independent threads: the ends of an interval change places.
-fn slowdowns(comparison: &Comparison) -> Vec<(usize, Interval)> {
-    let name = Independent::default().name();
-    let rows = comparison.rows.iter().filter(|row| row.strategy == name);
-    rows.filter_map(|row| {
-        let Interval { median, low, high } = row.figures?.speedup;
-        Some((row.threads, Interval { median: 1.0 / median, low: 1.0 / high, high: 1.0 / low }))
-    })
-    .collect()
 }
 
 /// For so many threads: that of the largest number measured that is not larger, and so of all threads here for any more.

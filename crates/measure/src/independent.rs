@@ -1,19 +1,40 @@
-//! The ceiling: threads that share nothing, each of which draws the whole picture.
+//! What cores cost each other: threads that share nothing, each of which draws the whole picture.
 
+use crate::statistics::{Interval, median_ratio_interval};
 use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule, panic_message, render_tile};
 use rayweave_core::{Image, Plan, Renderer, Strategy, StrategyError, ThreadsStart, Work};
 use std::io;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
+use std::time::{Duration, Instant};
 
 const NAME: &str = "independent";
 
 /// No way to share work: with N threads the picture is drawn N times. How much longer that takes than once is what the
-/// machine's cores cost each other; by sharing nobody does better.
+/// machine's cores cost each other.
 #[derive(Debug, Default)]
 pub struct Independent {
-    /// Of each thread but the first, kept so that no rendering but the first pays for fresh memory.
-    copies: Arc<Mutex<Vec<Image>>>,
+    shared: Arc<Mutex<Shared>>,
+}
+
+/// What one rendering leaves to the next.
+#[derive(Debug, Default)]
+struct Shared {
+    /// Of each thread but the first: no rendering but the first pays for fresh memory.
+    copies: Vec<Image>,
+    /// Of each rendering, how long a thread drew, in nanoseconds, in the mean.
+    thread_ns: Vec<f64>,
+}
+
+impl Independent {
+    /// How many times as long as alone, `alone_ns` nanoseconds, a thread drew beside the others; `None` before any
+    /// rendering. Of each rendering the mean of its threads counts, not the last: where work is shared, whoever is not
+    /// disturbed does more of it.
+    #[must_use]
+    pub fn slowdown(&self, alone_ns: &[u64]) -> Option<Interval> {
+        let alone: Vec<f64> = alone_ns.iter().map(|&ns| ns as f64).collect();
+        median_ratio_interval(&self.shared.lock().unwrap_or_else(PoisonError::into_inner).thread_ns, &alone)
+    }
 }
 
 impl Strategy for Independent {
@@ -34,42 +55,47 @@ impl Strategy for Independent {
     }
 
     fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
-        Ok(Box::new(Copying { plan, copies: Arc::clone(&self.copies) }))
+        Ok(Box::new(Copying { plan, shared: Arc::clone(&self.shared) }))
     }
 }
 
 struct Copying {
     plan: Plan,
-    copies: Arc<Mutex<Vec<Image>>>,
+    shared: Arc<Mutex<Shared>>,
 }
 
 impl Renderer for Copying {
     fn render(&mut self, work: &dyn Work, image: &mut Image) -> Result<(), StrategyError> {
         let threads = self.plan.threads.get();
         let cannot_start = |source| StrategyError::Spawn { strategy: NAME, threads, source };
-        let mut copies = self.copies.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
+        let Shared { copies, thread_ns } = &mut *shared;
         copies.retain(|copy| (copy.width(), copy.height()) == (image.width(), image.height()));
         while copies.len() < threads - 1 {
             let copy = Image::new(image.width(), image.height());
             copies.push(copy.map_err(|e| cannot_start(io::Error::other(e)))?);
         }
         let draw = |image: &mut Image| {
-            image.tiles(self.plan.tile).iter_mut().try_for_each(|tile| render_tile(NAME, work, tile))
+            let begin = Instant::now();
+            image.tiles(self.plan.tile).iter_mut().try_for_each(|tile| render_tile(NAME, work, tile))?;
+            Ok(begin.elapsed())
         };
-        thread::scope(|scope| {
+        let sum = thread::scope(|scope| {
             let others = copies[..threads - 1].iter_mut().map(|copy| {
                 let thread = thread::Builder::new().name(NAME.to_owned());
                 thread.spawn_scoped(scope, || draw(copy)).map_err(cannot_start)
             });
             let others = others.collect::<Result<Vec<_>, _>>()?;
-            let own = draw(image);
+            let mut sum: Duration = draw(image)?;
             for other in others {
-                other
+                sum += other
                     .join()
                     .map_err(|payload| cannot_start(io::Error::other(panic_message(&*payload))))??;
             }
-            own
-        })
+            Ok(sum)
+        })?;
+        thread_ns.push(sum.as_nanos() as f64 / threads as f64);
+        Ok(())
     }
 }
 
@@ -93,5 +119,19 @@ mod tests {
             assert_eq!(record.threads(), 3);
             assert!(record.times_computed(width, height).iter().all(|times| *times == 3));
         }
+    }
+
+    /// Catches a time that is the sum of the threads' or that of the last: one draws 3 ns, the other 9.
+    #[test]
+    fn a_thread_is_slowed_down_by_the_mean() {
+        let independent = Independent::default();
+        assert_eq!(independent.slowdown(&[4]), None);
+        let threads = NonZeroUsize::new(2).expect("not 0");
+        let mut renderer = independent.prepare(Plan { threads, tile: NonZeroU32::MIN }).expect("prepared");
+        let begin = Instant::now();
+        renderer.render(&even(20_000), &mut Image::new(16, 16).expect("a picture")).expect("drawn");
+        let wall = begin.elapsed().as_nanos() as u64;
+        let slowdown = independent.slowdown(&[wall]).expect("rendered").median;
+        assert!(slowdown > 0.0 && slowdown <= 1.0, "{slowdown}");
     }
 }

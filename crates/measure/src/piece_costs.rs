@@ -1,21 +1,166 @@
 //! What each piece of a picture costs, computed alone on one thread.
 
-use crate::statistics::{lower_quartile, median};
-use rayweave_core::image::ImageError;
-use rayweave_core::strategy::Piece;
-use rayweave_core::{Image, Tile, Work};
+use crate::statistics::lower_quartile;
+use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule, render_tile};
+use rayweave_core::{Image, Plan, Renderer, Strategy, StrategyError, ThreadsStart, Tile, Work};
 use std::num::NonZeroU32;
-use std::time::{Duration, Instant};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
 
 /// Pixels that share a reading of the clock, which takes as long as a cheap pixel.
 const RUN: usize = 16;
 
-/// Passes over each kind of piece; beyond the least number of them only as long as there is time.
-const PASSES: std::ops::RangeInclusive<usize> = 3..=9;
+/// What a picture is cut into.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cut {
+    /// One pixel at a time.
+    Pixels,
+    /// One row at a time.
+    Rows,
+    /// Tiles of [`Plan::tile`].
+    Tiles,
+    /// Not at all.
+    Whole,
+}
 
-const BUDGET: Duration = Duration::from_secs(6);
+impl Cut {
+    /// Those that the costs of `pieces` are found from.
+    #[must_use]
+    pub fn for_pieces(pieces: &[Piece]) -> Vec<Self> {
+        let is_needed = |cut: &Self| {
+            pieces.iter().any(|piece| match piece {
+                Piece::Pixel => *cut == Self::Pixels,
+                Piece::Row => *cut == Self::Rows,
+                Piece::Tile => *cut == Self::Tiles,
+                Piece::Band => matches!(cut, Self::Rows | Self::Whole),
+            })
+        };
+        [Self::Pixels, Self::Rows, Self::Tiles, Self::Whole].into_iter().filter(is_needed).collect()
+    }
 
-/// Nanoseconds of every piece, by the kind of piece, in the order of their numbers; of kinds not asked for none.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Pixels => "pixels one by one",
+            Self::Rows => "rows one by one",
+            Self::Tiles => "tiles one by one",
+            Self::Whole => "all at once",
+        }
+    }
+}
+
+/// No way to spread work: the caller's thread draws one piece after the other, and takes note of what each costs. As
+/// an entry of a comparison it is timed in the same rounds as all others.
+#[derive(Debug)]
+pub struct OneByOne {
+    cut: Cut,
+    passes: Passes,
+}
+
+/// Of each rendering the nanoseconds of every piece.
+type Passes = Arc<Mutex<Vec<Vec<f64>>>>;
+
+impl OneByOne {
+    /// Nothing is drawn yet.
+    #[must_use]
+    pub fn new(cut: Cut) -> Self {
+        Self { cut, passes: Passes::default() }
+    }
+
+    /// Nanoseconds of every piece: among themselves as in the lower quartile of all renderings, undisturbed, and
+    /// together `total`. A short piece finds a moment without disturbance sooner than a long one, and would seem
+    /// cheaper beside other kinds than it is.
+    #[must_use]
+    pub fn costs(&self, total: f64) -> Vec<f64> {
+        let passes = self.passes.lock().unwrap_or_else(PoisonError::into_inner);
+        scaled(&passes, total)
+    }
+}
+
+impl Strategy for OneByOne {
+    fn name(&self) -> &'static str {
+        self.cut.name()
+    }
+
+    fn summary(&self) -> &'static str {
+        "one thread draws and times each piece"
+    }
+
+    fn threads_start(&self) -> ThreadsStart {
+        ThreadsStart::Never
+    }
+
+    fn rule(&self) -> Rule {
+        let piece = match self.cut {
+            Cut::Pixels => Piece::Pixel,
+            Cut::Rows => Piece::Row,
+            Cut::Tiles => Piece::Tile,
+            Cut::Whole => Piece::Band,
+        };
+        Rule { piece, dealing: Dealing::Equal, delivery: Delivery::InPlace }
+    }
+
+    fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
+        Ok(Box::new(Timing { cut: self.cut, tile: plan.tile, passes: Arc::clone(&self.passes) }))
+    }
+}
+
+struct Timing {
+    cut: Cut,
+    tile: NonZeroU32,
+    passes: Passes,
+}
+
+impl Renderer for Timing {
+    fn render(&mut self, work: &dyn Work, image: &mut Image) -> Result<(), StrategyError> {
+        let width = image.width() as usize;
+        let timed = |tile: &mut Tile<'_>| {
+            let begin = Instant::now();
+            render_tile(self.cut.name(), work, tile)?;
+            Ok(begin.elapsed().as_nanos() as f64)
+        };
+        let costs: Result<Vec<f64>, StrategyError> = match self.cut {
+            Cut::Pixels => pixels(work, image),
+            Cut::Rows => (0..)
+                .zip(image.pixels_mut().chunks_mut(width))
+                .map(|(y, row)| timed(&mut Tile::row(0, y, row)))
+                .collect(),
+            Cut::Tiles => image.tiles(self.tile).iter_mut().map(timed).collect(),
+            // Tiles larger than the picture: one.
+            Cut::Whole => image.tiles(NonZeroU32::MAX).iter_mut().map(timed).collect(),
+        };
+        self.passes.lock().unwrap_or_else(PoisonError::into_inner).push(costs?);
+        Ok(())
+    }
+}
+
+/// Draws the pixels, and takes the time of [`RUN`] of them at once.
+fn pixels(work: &dyn Work, image: &mut Image) -> Result<Vec<f64>, StrategyError> {
+    let width = image.width() as usize;
+    let mut costs = Vec::with_capacity(image.pixels_mut().len());
+    for (run, colors) in image.pixels_mut().chunks_mut(RUN).enumerate() {
+        let pixels = colors.len();
+        let begin = Instant::now();
+        for (index, color) in (run * RUN..).zip(colors) {
+            let mut tile = Tile::pixel((index % width) as u32, (index / width) as u32, color);
+            render_tile(Cut::Pixels.name(), work, &mut tile)?;
+        }
+        let cost = begin.elapsed().as_nanos() as f64 / pixels as f64;
+        costs.resize(costs.len() + pixels, cost);
+    }
+    Ok(costs)
+}
+
+/// See [`OneByOne::costs`].
+fn scaled(passes: &[Vec<f64>], total: f64) -> Vec<f64> {
+    let pieces = passes.first().map_or(0, Vec::len);
+    let quartile = |piece: usize| lower_quartile(&passes.iter().map(|pass| pass[piece]).collect::<Vec<_>>());
+    let quartiles: Vec<f64> = (0..pieces).filter_map(quartile).collect();
+    let sum: f64 = quartiles.iter().sum();
+    let factor = if sum > 0.0 { total / sum } else { 1.0 };
+    quartiles.into_iter().map(|cost| cost * factor).collect()
+}
+
+/// Nanoseconds of every piece, by the kind of piece, in the order of their numbers; of kinds not measured none.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PieceCosts {
     pixels: Vec<f64>,
@@ -26,58 +171,18 @@ pub struct PieceCosts {
 }
 
 impl PieceCosts {
-    /// Measures `kinds` of pieces of `work`, taking turns.
-    ///
-    /// # Errors
-    ///
-    /// There is no picture of `width` x `height` pixels.
-    pub fn measure(
-        work: &dyn Work,
-        (width, height): (u32, u32),
-        tile: NonZeroU32,
-        kinds: &[Piece],
-        mut progress: impl FnMut(f64),
-    ) -> Result<Self, ImageError> {
-        let mut image = Image::new(width, height)?;
-        let begin = Instant::now();
-        let mut passes: Vec<Self> = Vec::new();
-        while passes.len() < *PASSES.start() || (passes.len() < *PASSES.end() && begin.elapsed() < BUDGET) {
-            progress((passes.len() as f64 / *PASSES.start() as f64).min(1.0));
-            passes.push(Self::pass(work, &mut image, tile, kinds));
-        }
-        Ok(Self {
-            pixels: typical(&passes, |pass| &pass.pixels),
-            rows: typical(&passes, |pass| &pass.rows),
-            tiles: typical(&passes, |pass| &pass.tiles),
-            whole: median(&passes.iter().map(|pass| pass.whole).collect::<Vec<_>>()).unwrap_or(0.0),
-        })
-    }
-
-    fn pass(work: &dyn Work, image: &mut Image, tile: NonZeroU32, kinds: &[Piece]) -> Self {
+    /// From `measured`, each with its speed-up over a reference that takes `reference_ns`.
+    #[must_use]
+    pub fn new(measured: &[(&OneByOne, f64)], reference_ns: f64) -> Self {
         let mut costs = Self::default();
-        let width = image.width() as usize;
-        if kinds.contains(&Piece::Pixel) {
-            for (run, colors) in image.pixels_mut().chunks_mut(RUN).enumerate() {
-                let length = colors.len();
-                let time = time(|| {
-                    for (index, color) in (run * RUN..).zip(colors) {
-                        work.render(&mut Tile::pixel((index % width) as u32, (index / width) as u32, color));
-                    }
-                });
-                costs.pixels.resize(costs.pixels.len() + length, time / length as f64);
+        for (one_by_one, speedup) in measured {
+            let of_pieces = one_by_one.costs(reference_ns / speedup);
+            match one_by_one.cut {
+                Cut::Pixels => costs.pixels = of_pieces,
+                Cut::Rows => costs.rows = of_pieces,
+                Cut::Tiles => costs.tiles = of_pieces,
+                Cut::Whole => costs.whole = of_pieces.iter().sum(),
             }
-        }
-        if kinds.contains(&Piece::Row) || kinds.contains(&Piece::Band) {
-            let rows = (0..).zip(image.pixels_mut().chunks_mut(width));
-            costs.rows = rows.map(|(y, row)| time(|| work.render(&mut Tile::row(0, y, row)))).collect();
-        }
-        if kinds.contains(&Piece::Tile) {
-            costs.tiles = image.tiles(tile).iter_mut().map(|tile| time(|| work.render(tile))).collect();
-        }
-        if kinds.contains(&Piece::Band) {
-            // Tiles larger than the picture: one.
-            costs.whole =
-                image.tiles(NonZeroU32::MAX).iter_mut().map(|tile| time(|| work.render(tile))).sum();
         }
         costs
     }
@@ -108,43 +213,38 @@ impl PieceCosts {
     }
 }
 
-/// Nanoseconds of `action`.
-fn time(action: impl FnOnce()) -> f64 {
-    let begin = Instant::now();
-    action();
-    begin.elapsed().as_nanos() as f64
-}
-
-/// Of each piece the lower quartile, all scaled to the median of what a pass takes. Among themselves pieces are as
-/// they are undisturbed; but a short one finds a moment without disturbance sooner than a long one, and would seem
-/// cheaper beside other kinds than it is.
-fn typical(passes: &[PieceCosts], of: fn(&PieceCosts) -> &Vec<f64>) -> Vec<f64> {
-    let pieces = passes.first().map_or(0, |pass| of(pass).len());
-    let quartile =
-        |piece: usize| lower_quartile(&passes.iter().map(|pass| of(pass)[piece]).collect::<Vec<_>>());
-    let quartiles: Vec<f64> = (0..pieces).filter_map(quartile).collect();
-    let totals: Vec<f64> = passes.iter().map(|pass| of(pass).iter().sum()).collect();
-    let total: f64 = quartiles.iter().sum();
-    let factor = median(&totals).filter(|_| total > 0.0).map_or(1.0, |median| median / total);
-    quartiles.into_iter().map(|cost| cost * factor).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::synthetic::even;
+    use std::num::NonZeroUsize;
 
-    /// Catches kinds that are cut wrongly: 7 x 5 pixels in tiles of 4 are 2 x 2 tiles.
+    /// What `cut` of a picture of 7 x 5 pixels, in tiles of 4, costs after two renderings.
+    fn costs(cut: Cut, total: f64) -> Vec<f64> {
+        let one_by_one = OneByOne::new(cut);
+        let plan = Plan { threads: NonZeroUsize::MIN, tile: NonZeroU32::new(4).expect("not 0") };
+        let mut image = Image::new(7, 5).expect("a picture");
+        for _ in 0..2 {
+            let mut renderer = one_by_one.prepare(plan).expect("prepared");
+            renderer.render(&even(50), &mut image).expect("drawn");
+        }
+        one_by_one.costs(total)
+    }
+
+    /// Catches pictures that are cut wrongly.
     #[test]
-    fn a_cost_for_each_piece_of_the_kinds_asked_for() {
-        let tile = NonZeroU32::new(4).expect("not 0");
-        let costs = |kinds: &[Piece]| {
-            let costs = PieceCosts::measure(&even(50), (7, 5), tile, kinds, |_| ()).expect("a picture");
-            [Piece::Pixel, Piece::Row, Piece::Tile].map(|piece| costs.of(piece, 1).len())
-        };
-        assert_eq!(costs(&[Piece::Pixel, Piece::Row, Piece::Tile]), [35, 5, 4]);
-        assert_eq!(costs(&[Piece::Band]), [0, 5, 0]);
-        assert_eq!(costs(&[Piece::Tile]), [0, 0, 4]);
+    fn every_piece_has_a_cost() {
+        let pieces = [Cut::Pixels, Cut::Rows, Cut::Tiles, Cut::Whole].map(|cut| costs(cut, 1.0).len());
+        assert_eq!(pieces, [35, 5, 2 * 2, 1]);
+        let sum: f64 = costs(Cut::Rows, 1e6).iter().sum();
+        assert!((sum - 1e6).abs() < 1.0, "{sum}");
+    }
+
+    #[test]
+    fn only_what_is_asked_for_is_cut() {
+        assert_eq!(Cut::for_pieces(&[Piece::Tile, Piece::Tile]), [Cut::Tiles]);
+        assert_eq!(Cut::for_pieces(&[Piece::Band, Piece::Pixel]), [Cut::Pixels, Cut::Rows, Cut::Whole]);
+        assert_eq!(Cut::for_pieces(&[Piece::Row]), [Cut::Rows]);
     }
 
     /// Rows of 10 each alone, but 28 for all four together: what follows a row costs 6.
@@ -160,13 +260,12 @@ mod tests {
         assert_eq!(slower.of(Piece::Band, 1), [40.0], "no row is dearer in company");
     }
 
-    /// The least are 3 and 4 and make 7, where a pass takes 14 in the median.
+    /// The least are 3 and 4.
     #[test]
-    fn pieces_are_told_apart_undisturbed_and_take_what_a_pass_takes() {
-        let pass = |rows: [f64; 2]| PieceCosts { rows: rows.to_vec(), ..PieceCosts::default() };
-        let passes = [pass([3.0, 11.0]), pass([5.0, 4.0]), pass([9.0, 6.0])];
-        assert_eq!(typical(&passes, |pass| &pass.rows), [6.0, 8.0]);
-        assert!(typical(&passes, |pass| &pass.tiles).is_empty());
-        assert_eq!(typical(&[pass([0.0, 0.0])], |pass| &pass.rows), [0.0, 0.0]);
+    fn pieces_are_told_apart_undisturbed_and_are_the_total_together() {
+        let passes = [vec![3.0, 11.0], vec![5.0, 4.0], vec![9.0, 6.0]];
+        assert_eq!(scaled(&passes, 14.0), [6.0, 8.0]);
+        assert!(scaled(&[], 14.0).is_empty());
+        assert_eq!(scaled(&[vec![0.0, 0.0]], 14.0), [0.0, 0.0]);
     }
 }

@@ -43,7 +43,7 @@ pub struct Arguments {
 
 /// A strategy takes three renderings a round, one of them on a single thread.
 const PROTOCOL: Protocol =
-    Protocol { min_rounds: 6, max_rounds: 40, budget: Duration::from_secs(20), goal: None, seed: 1 };
+    Protocol { min_rounds: 6, max_rounds: 200, budget: Duration::from_secs(20), goal: None, seed: 1 };
 
 /// The most pixels of a picture: each may be a piece of which a record is kept, three times 40 bytes at the most.
 const MAX_PIXELS: u64 = 1 << 24;

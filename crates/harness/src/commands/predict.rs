@@ -62,7 +62,6 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let bar = Share::new();
     let forecast = question.answer(|stage, fraction| {
         let message = match stage {
-            Stage::Pieces => "pieces, one by one",
             Stage::Overheads => "overheads of threads",
             Stage::Renderings => "renderings",
         };

@@ -96,22 +96,12 @@ fn basis(report: &Report<'_>) -> String {
         let slowdown = style::precise_interval(slowdown);
         format!("{threads} threads that share nothing take {slowdown} times as long as one, each: used.")
     });
-    let (predicted, measured) = forecast.reference_ns;
-    let reference = measured.map_or_else(String::new, |measured| {
-        format!(
-            "the reference: {:.2} ms, by its pieces {:.2} ms ({:+.1} %); only ratios are predicted.",
-            measured / 1e6,
-            predicted / 1e6,
-            100.0 * (predicted / measured - 1.0)
-        )
-    });
-    let mut lines: Vec<String> = slowdowns.collect();
-    lines.push(reference);
-    lines.push(format!(
-        "measured: {} interleaved rounds, every picture verified; predicted from pieces timed alone and from the \
-         overheads of threads.",
+    let reference =
+        forecast.comparison.reference_ns().map(|ns| format!("the reference takes {:.2} ms.", ns / 1e6));
+    let rounds = format!(
+        "measured: {} interleaved rounds, every picture verified; predicted from pieces timed one by one on one thread, in \
+         the same rounds, and from the overheads of threads.",
         forecast.comparison.rounds
-    ));
-    lines.retain(|line| !line.is_empty());
-    lines.join("\n")
+    );
+    slowdowns.chain(reference).chain([rounds]).collect::<Vec<_>>().join("\n")
 }
