@@ -135,21 +135,16 @@ impl Image {
     #[must_use]
     pub fn tiles(&mut self, size: NonZeroU32) -> Vec<Tile<'_>> {
         let (width, size) = (self.width as usize, size.get().min(self.width.max(self.height)));
-        let mut tiles = Vec::new();
+        let count = |length: u32| length.div_ceil(size) as usize;
+        let mut tiles = Vec::with_capacity(count(self.width) * count(self.height));
         for (y, band) in
             (0..self.height).step_by(size as usize).zip(self.pixels.chunks_mut(width * size as usize))
         {
-            let height = band.len() / width;
-            let first = tiles.len();
-            for (j, row) in band.chunks_mut(width).enumerate() {
-                for (i, (x, slice)) in
-                    (0..self.width).step_by(size as usize).zip(row.chunks_mut(size as usize)).enumerate()
-                {
-                    match j {
-                        0 => tiles.push(Tile::of_rows(x, y, slice, height)),
-                        _ => tiles[first + i].rows.push(slice),
-                    }
-                }
+            let mut rows: Vec<_> = band.chunks_mut(width).map(|row| row.chunks_mut(size as usize)).collect();
+            for x in (0..self.width).step_by(size as usize) {
+                // As many columns as `x` has values are in each row.
+                let slices = rows.iter_mut().map(|row| row.next().unwrap_or_default());
+                tiles.push(Tile::of_rows(x, y, slices));
             }
         }
         tiles
@@ -300,22 +295,21 @@ impl<'a> Tile<'a> {
     pub fn band(y: u32, width: u32, colors: &'a mut [Rgb]) -> Self {
         let row = width as usize;
         assert!(!colors.is_empty() && colors.len().is_multiple_of(row), "whole rows of {width} pixels");
-        let height = colors.len() / row;
-        let mut rows = colors.chunks_exact_mut(row);
-        let mut band = Self::of_rows(0, y, rows.next().unwrap_or_default(), height);
-        rows.for_each(|row| band.rows.push(row));
-        band
+        Self::of_rows(0, y, colors.chunks_exact_mut(row))
     }
 
-    /// A tile of `height` rows, so far with the first of them.
-    fn of_rows(x: u32, y: u32, first: &'a mut [Rgb], height: usize) -> Self {
+    /// The tile of one row or more.
+    fn of_rows(x: u32, y: u32, mut rows: impl ExactSizeIterator<Item = &'a mut [Rgb]>) -> Self {
+        let height = rows.len();
+        let first = rows.next().unwrap_or_default();
         let area = Area { x, y, width: first.len() as u32, height: height as u32 };
         if height == 1 {
             return Self { area, rows: Rows::One(first) };
         }
-        let mut rows = Vec::with_capacity(height);
-        rows.push(first);
-        Self { area, rows: Rows::Many(rows) }
+        let mut many = Vec::with_capacity(height);
+        many.push(first);
+        many.extend(rows);
+        Self { area, rows: Rows::Many(many) }
     }
 
     /// Which pixels of the picture these are.
@@ -344,14 +338,5 @@ impl<'a> Tile<'a> {
             Rows::Many(rows) => rows.as_mut_slice(),
         };
         (self.area.y..).zip(rows.iter_mut().map(|row| &mut **row))
-    }
-}
-
-impl<'a> Rows<'a> {
-    fn push(&mut self, row: &'a mut [Rgb]) {
-        match self {
-            Self::Many(rows) => rows.push(row),
-            Self::One(_) => unreachable!("only tiles of many rows are built row by row"),
-        }
     }
 }

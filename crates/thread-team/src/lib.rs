@@ -1,7 +1,8 @@
 //! Forks N scoped threads, joins them, and lets them stop together: what every strategy with
 //! hand-spawned threads needs, and no strategy should have to say twice.
 //!
-//! The team is forked at each call of [`run`]; nothing outlives it. The caller's thread only waits.
+//! The team is forked at each call of [`run`]; nothing outlives it. The caller's thread is one of its members: that is
+//! one thread less to start, and two that the system may place on one core while the caller's is about to fall asleep.
 
 use rayweave_core::strategy::render_tile;
 use rayweave_core::{StrategyError, Tile, Work};
@@ -10,7 +11,7 @@ use std::num::NonZeroUsize;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
-use std::thread;
+use std::thread::{self, Scope};
 
 /// The team's word that a member failed: leave the work as it is and return.
 #[derive(Debug)]
@@ -24,7 +25,8 @@ pub struct Team {
     first_error: Mutex<Option<StrategyError>>,
 }
 
-/// Runs `body` on one thread for each of `shares`, all at the same time, and waits for them.
+/// Runs `body` on one thread for each of `shares`, all at the same time, and waits for them. The caller's thread has
+/// the last share.
 ///
 /// A share is what the thread alone works on: a range, slices of the picture, or nothing but a
 /// reference to a queue that all of them take from.
@@ -38,10 +40,21 @@ pub fn run<Share: Send>(
     shares: impl ExactSizeIterator<Item = Share>,
     body: impl Fn(&Team, Share) -> Result<(), Stop> + Sync,
 ) -> Result<(), StrategyError> {
-    run_beside(strategy, shares, body, || {})
+    let threads = shares.len();
+    let team = Team::new(strategy);
+    thread::scope(|scope| {
+        for (index, share) in shares.enumerate() {
+            if index + 1 == threads {
+                drop(body(&team, share));
+            } else if team.spawn(scope, index, threads, || body(&team, share)).is_err() {
+                break;
+            }
+        }
+    });
+    team.outcome()
 }
 
-/// As [`run`], while the caller's thread does `meanwhile`: it begins when all threads are started, or
+/// As [`run`], but the caller's thread has no share and does `meanwhile`: it begins when all threads are started, or
 /// have failed to, and has to end when they do.
 ///
 /// # Errors
@@ -55,13 +68,9 @@ pub fn run_beside<Share: Send>(
 ) -> Result<(), StrategyError> {
     let threads = shares.len();
     let team = Team::new(strategy);
-    let (team_ref, body) = (&team, &body);
     thread::scope(|scope| {
         for (index, share) in shares.enumerate() {
-            let thread = thread::Builder::new().name(format!("{strategy} {index}"));
-            // A member that returns `Stop` has nothing to add: the failure is with the team.
-            if let Err(source) = thread.spawn_scoped(scope, move || drop(body(team_ref, share))) {
-                team_ref.fail(StrategyError::Spawn { strategy, threads, source });
+            if team.spawn(scope, index, threads, || body(&team, share)).is_err() {
                 break;
             }
         }
@@ -122,6 +131,22 @@ impl Team {
         first_error.map_or(Ok(()), Err)
     }
 
+    /// Starts the member `index` of `threads`.
+    fn spawn<'scope, 'env: 'scope>(
+        &'env self,
+        scope: &'scope Scope<'scope, 'env>,
+        index: usize,
+        threads: usize,
+        body: impl FnOnce() -> Result<(), Stop> + Send + 'scope,
+    ) -> Result<(), Stop> {
+        let thread = thread::Builder::new().name(format!("{} {index}", self.strategy));
+        // A member that returns `Stop` has nothing to add: the failure is with the team.
+        match thread.spawn_scoped(scope, || drop(body())) {
+            Ok(_) => Ok(()),
+            Err(source) => Err(self.fail(StrategyError::Spawn { strategy: self.strategy, threads, source })),
+        }
+    }
+
     fn fail(&self, error: StrategyError) -> Stop {
         let mut first = self.first_error.lock().unwrap_or_else(PoisonError::into_inner);
         first.get_or_insert(error);
@@ -134,6 +159,7 @@ impl Team {
 mod tests {
     use super::*;
     use std::sync::mpsc;
+    use std::thread::ThreadId;
 
     #[test]
     fn shares_are_equal_but_for_one_piece_and_leave_nothing_out() {
@@ -158,6 +184,22 @@ mod tests {
         run_beside("test", senders, send, || received.extend(receiver)).expect("the threads start");
         received.sort_unstable();
         assert_eq!(received, [0, 1, 2, 3, 4]);
+    }
+
+    /// Catches a caller that waits, or that has another share than the last.
+    #[test]
+    fn the_caller_is_a_member() {
+        let ran = Mutex::new(Vec::new());
+        let note = |_: &Team, share: usize| {
+            ran.lock().unwrap_or_else(PoisonError::into_inner).push((share, thread::current().id()));
+            Ok(())
+        };
+        run("test", 0..5, note).expect("the threads start");
+        let mut ran = ran.into_inner().expect("nobody panicked");
+        ran.sort_unstable_by_key(|&(share, _)| share);
+        let by_caller = |&(share, id): &(usize, ThreadId)| (share, id == thread::current().id());
+        let expected = [(0, false), (1, false), (2, false), (3, false), (4, true)];
+        assert!(ran.iter().map(by_caller).eq(expected), "{ran:?}");
     }
 
     #[test]
