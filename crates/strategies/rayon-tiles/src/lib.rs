@@ -3,9 +3,11 @@
 //! * **What it decides**: that a tile is the smallest piece. rayon splits the list of tiles in halves
 //!   as long as idle threads steal them, never below [`MIN_LEN`].
 //! * **What it costs**: a pool that is started once (some 100 us), cutting the picture into tiles, and
-//!   at the end up to one tile's time of waiting.
-//! * **When it is right**: for uneven work whose pixels share something with their neighbours, in a
-//!   program that has rayon already: one line a loop, and the balance of a queue.
+//!   waiting at the end: a part is split while idle threads ask for it, not once it is being computed.
+//!   With all of the cost in one corner the threads that are done wait for that part
+//!   (scenes/loads/corner.toml); `with_max_len` would keep parts small, for a task a tile.
+//! * **When it is right**: for moderately uneven work whose pixels share something with their
+//!   neighbours, in a program that has rayon already: one line a loop.
 //!
 //! The pool is its own, with exactly the threads asked for: rayon's global pool has as many as the
 //! machine has cores, whatever a caller wants to measure.
