@@ -95,7 +95,7 @@ impl fmt::Display for Analysis {
             Found::Each => writeln!(f, "search: every ray tries every primitive")?,
             Found::Cones => writeln!(
                 f,
-                "search: rays from the eye and to a light try what is in their direction; others each primitive"
+                "search: rays from the eye, also by a plane's mirror, and to a light try what is in their direction; others each primitive"
             )?,
             Found::Tree { leaves } => writeln!(f, "search: a tree of boxes with {leaves} leaves")?,
         }

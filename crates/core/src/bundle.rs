@@ -1,11 +1,11 @@
-//! Rays through one point: all that leave the eye, or that look at one light.
+//! Rays through one point: all that leave the eye, that a plane mirrors straight from there, or that look at one light.
 //!
 //! Seen from that point a primitive fills a cone of directions. Whether a ray is outside of the cone is one dot
 //! product; only the others are tried. The cones are wider than the primitives by more than the errors of what is
 //! tried, so they change no picture.
 
 use crate::lane::{Lane, Scalar};
-use crate::scene::Scene;
+use crate::scene::{self, Scene};
 use crate::shapes::MARGIN;
 use crate::vector::Vector;
 use glam::DVec3;
@@ -30,7 +30,21 @@ pub(crate) struct Cone<S> {
 impl<S: Scalar> Bundle<S> {
     /// The cones of `scene`'s primitives, seen from `point`.
     pub(crate) fn new(scene: &Scene, point: DVec3) -> Self {
-        let cone = |center: DVec3, radius: f64| Cone::new(point, center, radius);
+        Self::around(scene, point, 0.0)
+    }
+
+    /// The cones as `mirror` shows them to `eye`: what it sends on comes straight from the eye's image behind it, but for
+    /// the roundings of a hit, of the ray's start and of its direction.
+    pub(crate) fn mirrored(scene: &Scene, eye: DVec3, mirror: &scene::Plane) -> Self {
+        let normal = mirror.normal.normalize();
+        let image = eye - normal * (2.0 * (eye - mirror.point).dot(normal));
+        let reach = [eye, image, mirror.point].map(|point| point.abs().max_element());
+        Self::around(scene, image, MARGIN * S::ROUNDOFF * reach.iter().sum::<f64>())
+    }
+
+    /// The cones around a point that is known up to `uncertainty`.
+    fn around(scene: &Scene, point: DVec3, uncertainty: f64) -> Self {
+        let cone = |center: DVec3, radius: f64| Cone::new(point, center, radius + uncertainty);
         Self {
             spheres: scene.spheres.iter().map(|s| cone(s.center, s.radius)).collect(),
             triangles: (scene.triangles.iter())

@@ -160,20 +160,20 @@ impl<S: Scalar> Primitives<S> {
         }
     }
 
-    /// The smallest `t` of the rays of `wanted`; of equal ones that of the lowest number. Of rays that all leave the
-    /// eye, `eye` knows what they may meet; their directions are of unit length.
+    /// The smallest `t` of the rays of `wanted`; of equal ones that of the lowest number. Of rays that all come from one
+    /// point `from` knows what they may meet, and how far away from it they start; their directions are of unit length.
     #[inline(always)]
     pub(crate) fn nearest<L: Lane<Scalar = S>, F: Family>(
         &self,
         ray: &Ray<L>,
         wanted: L::Mask,
-        eye: Option<&Bundle<S>>,
+        from: Option<(&Bundle<S>, L)>,
     ) -> Hit<L> {
         let mut nearest = Hit { t: miss(), primitive: L::splat_index(0) };
         for (number, plane) in (0..).zip(&self.planes) {
             nearest.offer::<true>(number, F::plane(plane, ray));
         }
-        match (&self.tree, eye) {
+        match (&self.tree, from) {
             (Some(tree), _) if F::FAITHFUL => ray.by_heading(wanted, |heading, wanted| {
                 let aim = self.aim(ray, heading);
                 tree.visit(ray, heading, wanted, nearest.t, |leaf, reached| {
@@ -181,8 +181,8 @@ impl<S: Scalar> Primitives<S> {
                     (wanted, nearest.t)
                 });
             }),
-            (_, Some(eye)) if F::FAITHFUL => {
-                self.met::<L, F>(eye, ray, (ray.direction, L::literal(0.0)), wanted, |number, t| {
+            (_, Some((bundle, distance))) if F::FAITHFUL => {
+                self.met::<L, F>(bundle, ray, (ray.direction, distance), wanted, |number, t| {
                     nearest.offer::<true>(number, t);
                     wanted
                 });

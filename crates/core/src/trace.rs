@@ -10,7 +10,7 @@ use crate::lane::{Lane, Mask, Scalar};
 use crate::material::{Finish, Light, Material, power};
 use crate::primitives::{Hit, Primitives};
 use crate::ray::Ray;
-use crate::scene::Scene;
+use crate::scene::{Plane, Scene};
 use crate::shapes::SurfacePoint;
 use crate::vector::Vector;
 use glam::DVec3;
@@ -24,6 +24,8 @@ pub(crate) struct World<S, F> {
     pub(crate) lights: Vec<Light<S>>,
     /// What rays from the eye may meet; else anything.
     pub(crate) eye: Option<Bundle<S>>,
+    /// What they may meet next after a plane that mirrors, by its number; else anything.
+    mirrored_eyes: Vec<Option<Bundle<S>>>,
     background: Vector<S>,
     /// The most bounces: 0 if nothing mirrors.
     pub(crate) max_reflections: u32,
@@ -66,7 +68,12 @@ impl<S: Scalar, F: Family> World<S, F> {
             let planes = hiding_planes(scene, light.position, confined, S::ROUNDOFF)?;
             Some(Light::new(light, planes, bundle(light.position)))
         });
+        let mirrored_eye = |plane: &Plane| {
+            let mirror = scene.materials[plane.material].reflection > 0.0;
+            eye.filter(|_| cones && mirror).map(|eye| Bundle::mirrored(scene, eye, plane))
+        };
         Self {
+            mirrored_eyes: scene.planes.iter().map(mirrored_eye).collect(),
             lights: lights.collect(),
             eye: eye.and_then(bundle),
             primitives,
@@ -89,8 +96,8 @@ impl<S: Scalar, F: Family> World<S, F> {
         mut active: L::Mask,
         from_eye: bool,
     ) -> Traced<L> {
-        let mut bundle = self.eye.as_ref().filter(|_| from_eye);
         let (zero, one) = (L::literal(0.0), L::literal(1.0));
+        let mut bundle = self.eye.as_ref().filter(|_| from_eye).map(|eye| (eye, zero));
         let mut color = Vector::zero();
         let mut share = one;
         let mut trail = L::splat_index(0);
@@ -116,10 +123,21 @@ impl<S: Scalar, F: Family> World<S, F> {
             if bounce == self.max_reflections || !active.any() {
                 break;
             }
+            if from_eye && bounce == 0 {
+                bundle = self.mirrored_eye::<L>(&hit, active).map(|eye| (eye, hit.t));
+            }
             share = share * surface.finish.reflection;
             ray = mirrored(&ray, &surface.at);
         }
         Traced { color, trail }
+    }
+
+    /// What rays from the eye may meet next if all of `active` hit the same plane.
+    #[inline(always)]
+    fn mirrored_eye<L: Lane<Scalar = S>>(&self, hit: &Hit<L>, active: L::Mask) -> Option<&Bundle<S>> {
+        let number = L::first_index(active, hit.primitive)?;
+        let others = active & !L::index_equals(hit.primitive, number);
+        self.mirrored_eyes.get(number as usize).filter(|_| !others.any())?.as_ref()
     }
 
     /// What is hit: each distinct primitive is looked up once, for all lanes that hit it.
