@@ -5,11 +5,10 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use tempfile::{Builder, NamedTempFile};
 
-/// A file that will be there once it is whole. Until then an old one of this name stays, and if it
-/// never is, nothing is left behind.
+/// A file that will be there once it is whole. Until then an old one of this name stays, and nothing lies beside it:
+/// who is interrupted before the end leaves nothing behind.
 pub struct PendingFile {
     path: PathBuf,
-    file: NamedTempFile,
 }
 
 impl PendingFile {
@@ -27,17 +26,24 @@ impl PendingFile {
         if !folder.is_dir() {
             return cannot(path, &format!("there is no folder {}", folder.display()));
         }
-        match new_file(&folder) {
-            Ok(file) => Ok(Self { path: target, file }),
+        // Removed at once: nobody is left to do it when the program is killed.
+        match new_file(&folder).and_then(NamedTempFile::close) {
+            Ok(()) => Ok(Self { path: target }),
             Err(error) => cannot(path, &format!("{} in its folder", error.kind())),
         }
     }
 
     /// Gives the file its contents and its name.
-    pub fn finish(mut self, contents: &[u8]) -> Result<(), String> {
-        let written = self.file.write_all(contents).and_then(|()| self.file.as_file().sync_all());
-        let kept = written.and_then(|()| self.file.persist(&self.path).map_err(|e| e.error));
-        kept.map(drop).or_else(|error| cannot(&self.path, &error.to_string()))
+    pub fn finish(self, contents: &[u8]) -> Result<(), String> {
+        self.replace(contents).or_else(|error| cannot(&self.path, &error.to_string()))
+    }
+
+    fn replace(&self, contents: &[u8]) -> io::Result<()> {
+        let mut file = new_file(&folder_of(&self.path))?;
+        file.write_all(contents)?;
+        file.as_file().sync_all()?;
+        file.persist(&self.path)?;
+        Ok(())
     }
 }
 
@@ -81,5 +87,36 @@ fn folder_of(path: &Path) -> PathBuf {
     match path.parent() {
         Some(parent) if parent != Path::new("") => parent.to_owned(),
         _ => PathBuf::from("."),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Catches a temporary file that an interrupted program would leave there.
+    #[test]
+    fn nothing_lies_in_the_folder_until_the_file_is_whole() {
+        let folder = tempfile::TempDir::new().expect("a temporary folder");
+        let path = folder.path().join("a.json");
+        let files = || fs::read_dir(folder.path()).expect("the folder").count();
+        let pending = PendingFile::create(&path).expect("can be written");
+        assert_eq!(files(), 0);
+        pending.finish(b"first").expect("written");
+
+        let pending = PendingFile::create(&path).expect("can be written");
+        assert_eq!((files(), fs::read(&path).expect("the old one")), (1, b"first".to_vec()));
+        pending.finish(b"second").expect("written");
+        assert_eq!((files(), fs::read(&path).expect("the new one")), (1, b"second".to_vec()));
+    }
+
+    #[test]
+    fn a_folder_that_is_gone_in_the_meantime_is_told() {
+        let folder = tempfile::TempDir::new().expect("a temporary folder");
+        let path = folder.path().join("a.json");
+        let pending = PendingFile::create(&path).expect("can be written");
+        folder.close().expect("removed");
+        let error = pending.finish(b"late").expect_err("nowhere to write");
+        assert!(error.starts_with(&format!("{}: cannot be written: ", path.display())), "{error}");
     }
 }
