@@ -263,6 +263,10 @@ fn a_baseline_says_what_has_changed() {
         ("--baseline old.md", "old.md: cannot be a baseline: not the JSON of a comparison"),
         ("--baseline old.json --json old.json", "old.json: is named twice"),
         ("--baseline old.json --share-samples both", "--baseline needs one table"),
+        (
+            "--baseline old.json --tile 2 --json new.json",
+            "old.json: cannot be a baseline: tile is 32 there and 2 here: use the same scene and options",
+        ),
     ] {
         let message = rayweave(folder.path(), &format!("{small} {arguments}")).expect_refusal();
         assert!(message.contains(expected), "{arguments}: {message}");

@@ -133,6 +133,11 @@ impl BothReport<'_> {
     }
 }
 
+/// The scene's file without its folder.
+fn scene_file(scene: &str) -> &str {
+    scene.rsplit(['/', '\\']).next().unwrap_or_default()
+}
+
 /// The word for how a ray's primitives are chosen.
 fn search(search: Search) -> &'static str {
     match search {

@@ -60,7 +60,7 @@ pub struct Options {
     /// Write the table as Markdown
     #[arg(long, value_name = "FILE")]
     markdown: Option<PathBuf>,
-    /// Say what has changed since an earlier run, by the JSON that it wrote
+    /// Say what has changed since an earlier run of the same scene with the same settings, by the JSON that it wrote
     #[arg(long, value_name = "FILE")]
     baseline: Option<PathBuf>,
     #[command(flatten)]
@@ -81,6 +81,11 @@ pub fn run(scene: Option<&Path>, options: &Options) -> Result<Outcome, String> {
     // All of them before the first is measured: a mistake in the last is told at once.
     let inputs = scenes.iter().map(|scene| load(scene.as_deref(), options));
     let inputs = inputs.collect::<Result<Vec<Input>, _>>()?;
+    if let (Some(path), Some(baseline), [input]) = (&options.baseline, &baseline, &inputs[..]) {
+        let tile = options.tile.of(input.width, input.height)?;
+        let subject = subject(input, ways(options)[0], tile);
+        baseline.check(&subject).map_err(|reason| no_baseline(path, &reason))?;
+    }
     let measured = scenes.iter().zip(inputs);
     let measured = measured.map(|(scene, input)| measure(scene.as_deref(), input, options, scenes.len()));
     let measured = measured.collect::<Result<Vec<Measured>, _>>()?;
@@ -162,9 +167,12 @@ impl Files {
 }
 
 fn read_baseline(path: &Path) -> Result<Baseline, String> {
-    let cannot = |reason: String| format!("{}: cannot be a baseline: {reason}", path.display());
-    let text = fs::read_to_string(path).map_err(|e| cannot(e.to_string()))?;
-    Baseline::parse(&text).map_err(cannot)
+    let text = fs::read_to_string(path).map_err(|e| no_baseline(path, &e.to_string()))?;
+    Baseline::parse(&text).map_err(|reason| no_baseline(path, &reason))
+}
+
+fn no_baseline(path: &Path, reason: &str) -> String {
+    format!("{}: cannot be a baseline: {reason}", path.display())
 }
 
 /// A scene, and a comparison for each way to compute its picture, measured in the same rounds.

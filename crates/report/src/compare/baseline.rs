@@ -1,12 +1,14 @@
 //! What has changed since an earlier comparison.
 
-use super::Report;
+use super::json::{SCHEMA, Settings};
+use super::{Report, Subject, scene_file};
 use crate::json::Ratio;
 use crate::style;
 use rayweave_measure::compare::{Role, Row};
 use rayweave_measure::statistics::{median_ratio_interval, ratios};
 use rayweave_measure::{Comparison, Interval};
 use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
 
 /// What is read of an earlier comparison's JSON.
 #[derive(Clone, Debug, Deserialize)]
@@ -14,6 +16,9 @@ pub struct Baseline {
     schema: u32,
     digest: String,
     results: Vec<Earlier>,
+    /// The settings, among all else.
+    #[serde(flatten)]
+    rest: Map<String, Value>,
 }
 
 #[derive(Clone, Debug, Deserialize)]
@@ -54,11 +59,35 @@ impl Baseline {
     pub fn parse(text: &str) -> Result<Self, String> {
         let baseline: Self =
             serde_json::from_str(text).map_err(|e| format!("not the JSON of a comparison: {e}"))?;
-        if baseline.schema != super::json::SCHEMA {
-            let (theirs, ours) = (baseline.schema, super::json::SCHEMA);
+        if baseline.schema != SCHEMA {
+            let (theirs, ours) = (baseline.schema, SCHEMA);
             return Err(format!("its schema is {theirs}, and this program reads {ours}"));
         }
         Ok(baseline)
+    }
+
+    /// Finds out whether times of `subject` can be compared with these, before any is taken. The scene may lie in
+    /// another folder.
+    ///
+    /// # Errors
+    ///
+    /// It was measured with other settings.
+    pub fn check(&self, subject: &Subject) -> Result<(), String> {
+        let here = serde_json::to_value(Settings::from(subject)).map_err(|e| e.to_string())?;
+        let here = here.as_object().into_iter().flatten();
+        let differences: Vec<String> = here
+            .filter_map(|(key, here)| {
+                let there = self.rest.get(key).unwrap_or(&Value::Null);
+                (!is_same(there, here)).then(|| format!("{key} is {there} there and {here} here"))
+            })
+            .collect();
+        if differences.is_empty() {
+            return Ok(());
+        }
+        Err(format!(
+            "{}: use the same scene and options, or measure a new baseline with these (--json)",
+            differences.join(", ")
+        ))
     }
 
     /// Of each row but the control.
@@ -85,6 +114,14 @@ impl Baseline {
             alike && !earlier.control && earlier.median_ns.is_some()
         };
         self.results.iter().find(of_row).map(|earlier| &earlier.samples_ns[..]).unwrap_or_default()
+    }
+}
+
+fn is_same(there: &Value, here: &Value) -> bool {
+    match (there, here) {
+        // Only the scene has a path.
+        (Value::String(there), Value::String(here)) => scene_file(there) == scene_file(here),
+        _ => there == here,
     }
 }
 
@@ -150,8 +187,9 @@ pub(super) fn text(baseline: &Baseline, report: &Report<'_>) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{comparison, sample, with_report};
+    use super::super::tests::{comparison, sample, subject, with_report};
     use super::*;
+    use rayweave_core::{Formulas, Sampling, Search};
 
     /// The made-up comparison, its reference and control `reference` and its pool `pool` times as slow.
     fn slowed(reference: f64, pool: f64) -> Comparison {
@@ -197,7 +235,7 @@ mod tests {
         assert!(line.is_some_and(|line| line.contains("1.100 [1.0")), "{text}");
         assert!(!text.contains("ANOTHER PICTURE"), "{text}");
         let json = with_report(&now, |report| Report { baseline: Some(&baseline), ..*report }.json());
-        let value: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+        let value: Value = serde_json::from_str(&json).expect("JSON");
         let pool = &value["changes"][1];
         assert_eq!((&pool["strategy"], &pool["verdict"]), (&"pool".into(), &"slower".into()));
         assert!((pool["time"]["median"].as_f64().expect("a number") - 1.1).abs() < 1e-6, "{pool}");
@@ -206,6 +244,41 @@ mod tests {
         let other = Baseline { digest: "of something else".to_owned(), ..baseline };
         let text = with_report(&now, |report| Report { baseline: Some(&other), ..*report }.table());
         assert!(text.contains("ANOTHER PICTURE"), "{text}");
+    }
+
+    /// A setting that is changed, and how that is told.
+    type Setting = (fn(&mut Subject), &'static str);
+
+    /// Catches a setting that makes times incomparable and is not noticed.
+    #[test]
+    fn a_baseline_of_other_settings_is_refused() {
+        let check = |change: fn(&mut Subject)| {
+            let mut subject = subject();
+            change(&mut subject);
+            baseline().check(&subject)
+        };
+        assert_eq!(check(|_| ()), Ok(()));
+        assert_eq!(check(|s| s.scene = "elsewhere/room".to_owned()), Ok(()));
+        let changes: [Setting; 12] = [
+            (|s| s.scene = "a/hall".to_owned(), "scene is \"room\" there and \"a/hall\" here"),
+            (|s| s.width = 501, "width is 500 there and 501 here"),
+            (|s| s.height = 1, "height is 400 there and 1 here"),
+            (|s| s.antialiasing = 3, "antialiasing is 2 there and 3 here"),
+            (|s| s.sampling = Sampling::Importance, "sampling is \"lattice\" there and \"importance\" here"),
+            (|s| s.adaptive = true, "adaptive is false there and true here"),
+            (|s| s.formulas = Formulas::Textbook, "formulas is \"robust\" there and \"textbook\" here"),
+            (|s| s.precision = "f64".to_owned(), "precision is \"f32\" there and \"f64\" here"),
+            (|s| s.lanes = 1, "lanes is 8 there and 1 here"),
+            (|s| s.share_samples = false, "share_samples is true there and false here"),
+            (|s| s.search = Search::Exhaustive, "search is \"auto\" there and \"exhaustive\" here"),
+            (|s| s.tile = 16, "tile is 32 there and 16 here"),
+        ];
+        let help = "use the same scene and options, or measure a new baseline with these (--json)";
+        for (change, difference) in changes {
+            assert_eq!(check(change), Err(format!("{difference}: {help}")));
+        }
+        let both = check(|s| (s.lanes, s.tile) = (4, 7)).expect_err("another");
+        assert_eq!(both, format!("lanes is 8 there and 4 here, tile is 32 there and 7 here: {help}"));
     }
 
     #[test]

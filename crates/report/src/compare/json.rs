@@ -1,7 +1,7 @@
 //! The comparison for other programs.
 
 use super::baseline::{self, Baseline, Change};
-use super::{BothReport, Report, noise, search, threads_start};
+use super::{BothReport, Report, Subject, noise, search, threads_start};
 use crate::json::{self, Ratio};
 use crate::machine::Facts;
 use rayweave_measure::compare::{Role, Row};
@@ -13,27 +13,53 @@ pub(super) const SCHEMA: u32 = 1;
 #[derive(Serialize)]
 struct Object<'a> {
     schema: u32,
-    scene: &'a str,
-    width: u32,
-    height: u32,
-    antialiasing: u32,
-    sampling: String,
-    formulas: String,
-    precision: &'a str,
-    tile: u32,
+    #[serde(flatten)]
+    settings: Settings<'a>,
     rounds: usize,
     seed: u64,
     digest: String,
     machine: Facts<'a>,
-    lanes: usize,
-    share_samples: bool,
-    search: &'a str,
-    adaptive: bool,
     precision_goal: Option<f64>,
     noise: noise::Object,
     #[serde(skip_serializing_if = "Option::is_none")]
     changes: Option<Vec<baseline::Object>>,
     results: Vec<Result<'a>>,
+}
+
+/// What two comparisons have to have in common for their times to be compared.
+#[derive(Serialize)]
+pub(super) struct Settings<'a> {
+    scene: &'a str,
+    width: u32,
+    height: u32,
+    antialiasing: u32,
+    sampling: String,
+    adaptive: bool,
+    formulas: String,
+    precision: &'a str,
+    lanes: usize,
+    share_samples: bool,
+    search: &'a str,
+    tile: u32,
+}
+
+impl<'a> From<&'a Subject> for Settings<'a> {
+    fn from(subject: &'a Subject) -> Self {
+        Self {
+            scene: &subject.scene,
+            width: subject.width,
+            height: subject.height,
+            antialiasing: subject.antialiasing,
+            sampling: subject.sampling.to_string(),
+            adaptive: subject.adaptive,
+            formulas: subject.formulas.to_string(),
+            precision: &subject.precision,
+            lanes: subject.lanes,
+            share_samples: subject.share_samples,
+            search: search(subject.search),
+            tile: subject.tile,
+        }
+    }
 }
 
 /// The object with samples shared, and what else there is to say.
@@ -103,22 +129,11 @@ fn object<'a>(report: &Report<'a>) -> Object<'a> {
     let changes = |baseline: &Baseline| baseline.changes(comparison).iter().map(Change::object).collect();
     Object {
         schema: SCHEMA,
-        scene: &subject.scene,
-        width: subject.width,
-        height: subject.height,
-        antialiasing: subject.antialiasing,
-        sampling: subject.sampling.to_string(),
-        formulas: subject.formulas.to_string(),
-        precision: &subject.precision,
-        tile: subject.tile,
+        settings: subject.into(),
         rounds: comparison.rounds,
         seed: comparison.seed,
         digest: comparison.digest.to_string(),
         machine: Facts::new(machine),
-        lanes: subject.lanes,
-        share_samples: subject.share_samples,
-        search: search(subject.search),
-        adaptive: subject.adaptive,
         precision_goal: comparison.goal,
         noise: noise.into(),
         changes: baseline.map(changes),

@@ -1,7 +1,7 @@
 //! Several scenes beside each other: which strategy wins where, and why.
 
 use super::table::label;
-use super::{Report, csv, json};
+use super::{Report, csv, json, scene_file};
 use crate::{machine, style};
 use rayweave_core::strategy::{Dealing, Piece};
 use rayweave_measure::compare::{Role, Row};
@@ -86,7 +86,7 @@ fn speedup(row: &Row) -> Option<Interval> {
 
 /// The scene's file without its folder and ending.
 fn name(report: &Report<'_>) -> String {
-    let file = report.subject.scene.rsplit(['/', '\\']).next().unwrap_or_default();
+    let file = scene_file(&report.subject.scene);
     file.strip_suffix(".toml").unwrap_or(file).to_owned()
 }
 
