@@ -22,6 +22,9 @@ const HEADER: [&str; 10] = [
 /// The columns of numbers, which line up at their right.
 const NUMBERS: std::ops::RangeInclusive<usize> = 1..=7;
 
+/// The half of the control's interval, as a share of it, above which the table tells little.
+const TELLING: f64 = 0.05;
+
 /// What a cell without a figure holds.
 const NONE: &str = "-";
 
@@ -195,17 +198,28 @@ fn legend(comparison: &Comparison) -> [String; 4] {
 
 /// What the control says of the table.
 fn control(comparison: &Comparison) -> Option<String> {
-    let reference = reference(comparison);
-    comparison.control().map(|control| {
-        let verdict = if control.contains(1.0) {
-            "as it should be, 1 is in it.\n\
-             That much is order and drift, of one thread; to tell rows apart compare their own intervals."
-        } else {
-            "1 is not in it: measure again.\n\
-             Chance alone keeps it out of at most one quiet run in twenty."
-        };
-        format!("control: {reference} over itself is {}; {verdict}", style::precise_interval(control))
-    })
+    let (reference, control) = (reference(comparison), comparison.control()?);
+    let half_width = control.relative_half_width();
+    let (wide, percent) = (half_width > TELLING, half_width * 100.0);
+    let verdict = match (control.contains(1.0), wide) {
+        (true, false) => "as it should be, 1 is in it.".to_owned(),
+        (true, true) => format!("1 is in it, but it is as wide as +-{percent:.0} %."),
+        (false, _) => "1 is not in it: measure again.\n\
+                       Chance alone keeps it out of at most one quiet run in twenty."
+            .to_owned(),
+    };
+    let note = if wide {
+        format!(
+            "\nBelieve no difference between rows below {percent:.0} %: measure longer (--time-limit, --precision-goal), \
+             or on a quieter machine."
+        )
+    } else if control.contains(1.0) {
+        "\nThat much is order and drift, of one thread; to tell rows apart compare their own intervals."
+            .to_owned()
+    } else {
+        String::new()
+    };
+    Some(format!("control: {reference} over itself is {}; {verdict}{note}", style::precise_interval(control)))
 }
 
 /// Whether the rows are as precise as was wished for.
@@ -222,4 +236,44 @@ fn goal(comparison: &Comparison) -> Option<String> {
 
 fn reference(comparison: &Comparison) -> &'static str {
     comparison.rows.first().map_or("the reference", |row| row.strategy)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::comparison;
+    use super::*;
+    use rayweave_measure::Interval;
+
+    /// Catches a control that reassures however little it tells.
+    #[test]
+    fn a_control_says_what_is_to_be_believed() {
+        let told = |median, low, high| {
+            let mut comparison = comparison();
+            comparison.rows[1].figures.as_mut().expect("figures").speedup = Interval { median, low, high };
+            control(&comparison).expect("a control")
+        };
+        assert_eq!(
+            told(1.0, 0.951, 1.05),
+            "control: sequential over itself is 1.000 [0.951, 1.050]; as it should be, 1 is in it.\n\
+             That much is order and drift, of one thread; to tell rows apart compare their own intervals."
+        );
+        assert_eq!(
+            told(0.95, 0.92, 0.98),
+            "control: sequential over itself is 0.950 [0.920, 0.980]; 1 is not in it: measure again.\n\
+             Chance alone keeps it out of at most one quiet run in twenty."
+        );
+        assert_eq!(
+            told(1.0, 0.939, 1.11),
+            "control: sequential over itself is 1.000 [0.939, 1.110]; 1 is in it, but it is as wide as +-9 %.\n\
+             Believe no difference between rows below 9 %: measure longer (--time-limit, --precision-goal), or on a \
+             quieter machine."
+        );
+        assert_eq!(
+            told(0.8, 0.7, 0.91),
+            "control: sequential over itself is 0.800 [0.700, 0.910]; 1 is not in it: measure again.\n\
+             Chance alone keeps it out of at most one quiet run in twenty.\n\
+             Believe no difference between rows below 13 %: measure longer (--time-limit, --precision-goal), or on a \
+             quieter machine."
+        );
+    }
 }
