@@ -35,6 +35,7 @@ fn explain_writes_what_it_measured_of_every_strategy() {
         assert!(text.contains(&format!("{name} on 2 threads: ")), "{text}");
     }
     assert!(text.contains("imbalance") && text.contains("adds up to "), "{text}");
+    assert!(text.contains("\nnoise: ") && object["noise"]["wall_s"].as_f64() > Some(0.0), "{text}");
 
     let trace = json(&folder.path().join("a.trace.json"));
     let events = trace["traceEvents"].as_array().expect("a list");

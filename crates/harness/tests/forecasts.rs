@@ -55,7 +55,7 @@ fn predict_goes_beyond_the_threads_that_are_here() {
         scene("room.toml")
     );
     let text = rayweave(folder.path(), &arguments).expect_success();
-    for word in [name, "Amdahl", "USL", "within 5 %", "assumed: ", "arithmetic: "] {
+    for word in [name, "Amdahl", "USL", "within 5 %", "assumed: ", "\nnoise: ", "arithmetic: "] {
         assert!(text.contains(word), "{word}: {text}");
     }
     assert!(fs::read_to_string(folder.path().join("a.svg")).expect("the plot").contains(name));
@@ -80,6 +80,7 @@ fn predict_goes_beyond_the_threads_that_are_here() {
         assert!(keys.iter().all(|key| law[key].as_f64().is_some_and(|share| share >= 0.0)), "{law}");
     }
     assert!(is_positive(&law["overheads"]["start_ns"]), "{law}");
+    assert!(is_positive(&object["noise"]["wall_s"]), "{}", object["noise"]);
     assert_eq!(object["assumptions"].as_array().map(Vec::len), Some(5));
 }
 

@@ -4,11 +4,10 @@ mod baseline;
 mod csv;
 mod json;
 mod markdown;
-mod noise;
 mod scenes;
 mod table;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 pub use baseline::Baseline;
 pub use scenes::ScenesReport;

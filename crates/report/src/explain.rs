@@ -12,11 +12,11 @@ mod trace;
 use plotters::style::RGBColor;
 use rayweave_core::Image;
 use rayweave_core::image::ImageError;
-use rayweave_measure::Machine;
 use rayweave_measure::efficiency::Cause;
 use rayweave_measure::explanation::{Explanation, Row};
 use rayweave_measure::recorder::Cost;
 use rayweave_measure::timeline::{Lane, Timeline};
+use rayweave_measure::{Machine, Noise};
 use serde::Serialize;
 
 /// An explanation with everything that is needed to read it.
@@ -34,6 +34,8 @@ pub struct Report<'a> {
     pub rays: &'a Cost<'a>,
     /// What it was measured on.
     pub machine: &'a Machine,
+    /// What else went on there.
+    pub noise: &'a Noise,
 }
 
 impl Report<'_> {
@@ -46,7 +48,7 @@ impl Report<'_> {
 
     /// For programs: an object of schema 1. Each of its `results` has `strategy`, `threads`, `wall_ns`, `speedup`,
     /// `lost_ns`, `losses_ns` with a key for each cause, `unexplained_ns`, and what each of the `threads_recorded` did
-    /// in the quickest of the recorded renderings.
+    /// in the quickest of the recorded renderings. `noise` is that of a comparison, in docs/compare-json.md.
     #[must_use]
     pub fn json(&self) -> String {
         json::text(self)

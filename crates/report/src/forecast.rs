@@ -6,7 +6,7 @@ mod table;
 #[cfg(test)]
 mod tests;
 
-use rayweave_measure::{Forecast, Machine};
+use rayweave_measure::{Forecast, Machine, Noise};
 
 /// A forecast with everything that is needed to read it.
 #[derive(Clone, Copy, Debug)]
@@ -23,6 +23,8 @@ pub struct Report<'a> {
     pub forecast: &'a Forecast,
     /// What it was measured on.
     pub machine: &'a Machine,
+    /// What else went on there.
+    pub noise: &'a Noise,
 }
 
 /// What a prediction takes for granted.
@@ -42,7 +44,8 @@ impl Report<'_> {
         table::text(self)
     }
 
-    /// For programs: an object of schema 1, a result a strategy and number of threads, a law a strategy.
+    /// For programs: an object of schema 1, a result a strategy and number of threads, a law a strategy. `noise` is
+    /// that of a comparison, in docs/compare-json.md.
     #[must_use]
     pub fn json(&self) -> String {
         data::json(self)

@@ -16,6 +16,7 @@ pub mod explain;
 pub mod forecast;
 mod json;
 pub mod machine;
+mod noise;
 pub mod overhead;
 mod style;
 pub mod tradeoff;

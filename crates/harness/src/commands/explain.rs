@@ -9,6 +9,7 @@ use crate::{Outcome, print};
 use clap::Args;
 use rayweave_core::{Area, Strategy, primary_rays};
 use rayweave_measure::explanation::{Experiment, ExplainError};
+use rayweave_measure::noise::Watch;
 use rayweave_measure::{Machine, Protocol};
 use rayweave_report::explain::Report;
 use std::fs;
@@ -76,11 +77,13 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
         reference: rayweave_registry::reference(),
         protocol: Protocol { budget: PROTOCOL.budget * strategies.len() as u32, ..PROTOCOL },
     };
-    let bar = Share::new();
+    let (bar, watch) = (Share::new(), Watch::start());
     // Drawn between the timed spans.
     let explained = experiment.run(&strategies, arguments.threads.unwrap_or_else(all_threads), |fraction| {
         bar.show(fraction, "");
     });
+    let machine = Machine::here();
+    let noise = watch.finish(machine.logical_cores);
     drop(bar);
     let explanation = match explained {
         Ok(explanation) => explanation,
@@ -94,7 +97,6 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let rays = |tile: Area| {
         primary_rays(tile.width, tile.height, &input.scene.render, input.execution.share_samples)
     };
-    let machine = Machine::here();
     let report = Report {
         scene: &input.name,
         size: (width, height),
@@ -102,6 +104,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
         explanation: &explanation,
         rays: &rays,
         machine: &machine,
+        noise: &noise,
     };
     print(&format!("{}\n\n{}\n", input.describe(), report.text()))?;
     json.map_or(Ok(()), |file| file.finish(report.json().as_bytes()))?;

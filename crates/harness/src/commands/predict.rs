@@ -8,6 +8,7 @@ use crate::{Outcome, print};
 use clap::Args;
 use rayweave_core::Strategy;
 use rayweave_measure::forecast::{Question, Stage};
+use rayweave_measure::noise::Watch;
 use rayweave_measure::{Machine, Protocol};
 use rayweave_report::forecast::Report;
 use std::num::NonZeroUsize;
@@ -59,7 +60,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
         available: all_threads(),
         protocol: Protocol::default(),
     };
-    let bar = Share::new();
+    let (bar, watch) = (Share::new(), Watch::start());
     let forecast = question.answer(|stage, fraction| {
         let message = match stage {
             Stage::Overheads => "overheads of threads",
@@ -67,9 +68,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
         };
         bar.show(fraction, message);
     });
+    let machine = Machine::here();
+    let noise = watch.finish(machine.logical_cores);
     drop(bar);
     let forecast = forecast.map_err(|e| format!("{}: {e}", input.name))?;
-    let machine = Machine::here();
     let report = Report {
         scene: &input.name,
         width: input.width,
@@ -77,6 +79,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
         tile: tile.get(),
         forecast: &forecast,
         machine: &machine,
+        noise: &noise,
     };
     print(&format!("{}\n{}\n", report.table(), input.arithmetic_line()))?;
     json.map_or(Ok(()), |file| file.finish(report.json().as_bytes()))?;

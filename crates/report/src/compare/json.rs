@@ -1,9 +1,10 @@
 //! The comparison for other programs.
 
 use super::baseline::{self, Baseline, Change};
-use super::{BothReport, Report, Subject, noise, search, threads_start};
+use super::{BothReport, Report, Subject, search, threads_start};
 use crate::json::{self, Ratio};
 use crate::machine::Facts;
+use crate::noise;
 use rayweave_measure::compare::{Role, Row};
 use serde::Serialize;
 

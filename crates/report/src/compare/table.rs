@@ -1,7 +1,7 @@
 //! The comparison for people.
 
-use super::{BothReport, Report, Subject, baseline, noise, search};
-use crate::{machine, style};
+use super::{BothReport, Report, Subject, baseline, search};
+use crate::{machine, noise, style};
 use rayweave_core::{Formulas, Sampling, Search, ThreadsStart};
 use rayweave_measure::Comparison;
 use rayweave_measure::compare::{Rays, Role, Row};

@@ -87,7 +87,7 @@ pub(super) fn machine() -> Machine {
 }
 
 /// 1 % of two cores for ten seconds.
-pub(super) fn noise() -> Noise {
+pub(crate) fn noise() -> Noise {
     Noise {
         wall: Duration::from_secs(10),
         cores: 2,
@@ -216,7 +216,7 @@ fn a_control_that_differs_from_itself_is_told() {
 /// Catches a disturbance that only the figures show, and a goal that is said to be met.
 #[test]
 fn what_is_to_be_doubted_is_told() {
-    let line = |noise: &Noise| noise::text(noise);
+    let line = |noise: &Noise| crate::noise::text(noise);
     let disturbed = Noise { foreign: Some(Duration::from_millis(4950)), throttled: Some(3), ..noise() };
     let told = "noise: others had 25.0 % of the machine; 0.1 s of it other machines on the same host; stopped 3 times \
                 by the group's limit; 34 involuntary switches; 2400 to 3600 MHz.\nDISTURBED: measure again when the \

@@ -3,6 +3,7 @@
 use super::{Report, Thread, imbalance};
 use crate::json::{self, Ratio};
 use crate::machine::Facts;
+use crate::noise;
 use rayweave_measure::efficiency::{Cause, Losses};
 use rayweave_measure::explanation::Row;
 use serde::Serialize;
@@ -24,6 +25,7 @@ struct Object<'a> {
     recording_inside_ns: f64,
     recording_between_ns: f64,
     machine: Facts<'a>,
+    noise: noise::Object,
     results: Vec<Entry<'a>>,
 }
 
@@ -53,7 +55,7 @@ struct Causes {
 }
 
 pub(super) fn text(report: &Report<'_>) -> String {
-    let Report { scene, size: (width, height), tile, explanation, machine, .. } = *report;
+    let Report { scene, size: (width, height), tile, explanation, machine, noise, .. } = *report;
     json::text(&Object {
         schema: SCHEMA,
         scene,
@@ -67,6 +69,7 @@ pub(super) fn text(report: &Report<'_>) -> String {
         recording_inside_ns: explanation.cost.inside_ns,
         recording_between_ns: explanation.cost.outside_ns,
         machine: Facts::new(machine),
+        noise: noise.into(),
         results: explanation.rows.iter().map(|row| entry(report, row)).collect(),
     })
 }

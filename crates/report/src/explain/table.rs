@@ -1,7 +1,7 @@
 //! The explanation for people.
 
 use super::{Report, Thread, imbalance, label, name};
-use crate::{machine, style};
+use crate::{machine, noise, style};
 use rayweave_measure::efficiency::Cause;
 use rayweave_measure::explanation::{Explanation, Row};
 
@@ -18,6 +18,7 @@ pub(super) fn text(report: &Report<'_>) -> String {
         lines.extend([gaps(row), advice(row), String::new()]);
     }
     lines.extend(legend(report.explanation));
+    lines.push(noise::text(report.noise));
     lines.push(machine::text(report.machine));
     lines.join("\n")
 }

@@ -1,6 +1,7 @@
 //! Text, JSON, trace and pictures of one made-up explanation: a queue of tiles, and pixels by two of three threads.
 
 use super::*;
+use crate::compare::tests::noise;
 use rayweave_core::Area;
 use rayweave_measure::Interval;
 use rayweave_measure::efficiency::{Account, Losses};
@@ -63,7 +64,7 @@ fn explanation() -> Explanation {
 }
 
 fn with_report<T>(check: impl FnOnce(&Report<'_>) -> T) -> T {
-    let machine = Machine::here();
+    let (machine, noise) = (Machine::here(), noise());
     let explanation = explanation();
     let rays = |area: Area| Some(u64::from(area.width * area.height) + 1);
     check(&Report {
@@ -73,6 +74,7 @@ fn with_report<T>(check: impl FnOnce(&Report<'_>) -> T) -> T {
         explanation: &explanation,
         rays: &rays,
         machine: &machine,
+        noise: &noise,
     })
 }
 
@@ -101,6 +103,7 @@ fn text_puts_a_figure_to_each_cause_and_adds_them_up() {
     assert!(text.contains("computes 1.52 times the mean. Long gaps: over 1.5 us"), "{text}");
     assert!(text.contains("\nMost is lost to imbalance (8 %): "), "{text}");
     has("1 more thread got no piece");
+    has(&crate::noise::text(&noise()));
     has(
         "recording took 30 ns a piece in it and 51 ns between two, which the causes are without; the threads are those \
          of the quickest recorded rendering, with it.",
@@ -110,7 +113,7 @@ fn text_puts_a_figure_to_each_cause_and_adds_them_up() {
 /// Catches a percentage of next to nothing, and advice where there is nothing to gain.
 #[test]
 fn little_lost_is_said_to_be_little() {
-    let machine = Machine::here();
+    let (machine, noise) = (Machine::here(), noise());
     let mut explanation = explanation();
     let mut row = row("queue", 1, account(1, [100.2, 1.0, 0.0, 1.0]), Vec::new());
     (row.wall_ns, row.lost_ns) = (100.5 * MS, 0.5 * MS);
@@ -127,6 +130,7 @@ fn little_lost_is_said_to_be_little() {
         explanation: &explanation,
         rays: &|_| None,
         machine: &machine,
+        noise: &noise,
     };
     let text = report.text();
     assert!(text.starts_with("queue on 1 thread: "), "{text}");
@@ -138,6 +142,7 @@ fn little_lost_is_said_to_be_little() {
 fn json_has_every_cause_and_thread() {
     let value: Value = serde_json::from_str(&with_report(|report| report.json())).expect("JSON");
     assert_eq!((&value["schema"], &value["scene"], &value["rounds"]), (&1.into(), &"room".into(), &7.into()));
+    assert_eq!((&value["noise"]["wall_s"], &value["noise"]["disturbed"]), (&10.0.into(), &false.into()));
     let result = &value["results"][0];
     assert_eq!((&result["strategy"], &result["threads"]), (&"queue".into(), &2.into()));
     assert_eq!(result["speedup"], 100.0 / 60.0);

@@ -3,6 +3,7 @@
 use super::{ASSUMPTIONS, Report};
 use crate::json::{self, Ratio};
 use crate::machine::Facts;
+use crate::noise;
 use rayweave_measure::forecast::{Curve, Point};
 use rayweave_predict::{Law, Overheads};
 use serde::Serialize;
@@ -20,6 +21,7 @@ struct Object<'a> {
     rounds: usize,
     digest: String,
     machine: Facts<'a>,
+    noise: noise::Object,
     assumptions: [&'a str; 5],
     slowdowns: Vec<Slowdown>,
     reference_median_ns: Option<f64>,
@@ -95,6 +97,7 @@ pub(super) fn json(report: &Report<'_>) -> String {
         rounds: forecast.comparison.rounds,
         digest: forecast.comparison.digest.to_string(),
         machine: Facts::new(report.machine),
+        noise: report.noise.into(),
         assumptions: ASSUMPTIONS,
         slowdowns: forecast.slowdowns.iter().map(slowdown).collect(),
         reference_median_ns: forecast.comparison.reference_ns(),

@@ -2,8 +2,7 @@
 
 use super::{ASSUMPTIONS, Report};
 use crate::compare::complaint;
-use crate::machine;
-use crate::style;
+use crate::{machine, noise, style};
 use rayweave_measure::forecast::{Curve, Point};
 
 const NONE: &str = "-";
@@ -17,7 +16,7 @@ pub(super) fn text(report: &Report<'_>) -> String {
     let complaints: Vec<String> = complaints.chain(forecast.unavailable.iter().cloned()).collect();
     parts.extend((!complaints.is_empty()).then(|| complaints.join("\n")));
     parts.push(format!("assumed: {}.", ASSUMPTIONS.join(";\n")));
-    parts.push(machine::text(report.machine));
+    parts.push(format!("{}\n{}", noise::text(report.noise), machine::text(report.machine)));
     parts.join("\n\n")
 }
 

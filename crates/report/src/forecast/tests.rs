@@ -1,4 +1,5 @@
 use super::*;
+use crate::compare::tests::noise;
 use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule};
 use rayweave_core::{Image, ThreadsStart};
 use rayweave_measure::compare::{Role, Row};
@@ -57,8 +58,16 @@ fn forecast() -> Forecast {
 }
 
 fn with_report<T>(read: impl FnOnce(&Report<'_>) -> T) -> T {
-    let (forecast, machine) = (forecast(), Machine::here());
-    read(&Report { scene: "room", width: 5, height: 4, tile: 32, forecast: &forecast, machine: &machine })
+    let (forecast, machine, noise) = (forecast(), Machine::here(), noise());
+    read(&Report {
+        scene: "room",
+        width: 5,
+        height: 4,
+        tile: 32,
+        forecast: &forecast,
+        machine: &machine,
+        noise: &noise,
+    })
 }
 
 #[test]
@@ -75,6 +84,7 @@ fn the_table_predicts_checks_and_says_what_is_assumed() {
     assert!(table.contains("lock, 1 thread: a wrong picture"), "{table}");
     assert!(table.contains("1.050 [1.000, 1.100] times as long"), "{table}");
     assert!(!table.contains("the reference takes"), "it has no figures: {table}");
+    has(&crate::noise::text(&noise()));
     assert!(ASSUMPTIONS.iter().all(|assumption| table.contains(assumption)), "{table}");
 }
 
@@ -91,6 +101,7 @@ fn json_has_every_point_and_law() {
     assert_eq!(value["laws"][0]["overheads"]["start_ns"], 90.0);
     assert!(value["laws"][1]["amdahl"].is_null());
     assert_eq!(value["slowdowns"][0]["factor"]["high"], 1.1);
+    assert_eq!((&value["noise"]["wall_s"], &value["noise"]["disturbed"]), (&10.0.into(), &false.into()));
 }
 
 #[test]

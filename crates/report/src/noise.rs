@@ -4,7 +4,7 @@ use rayweave_measure::Noise;
 use serde::Serialize;
 
 /// One line, two if the times are to be doubted.
-pub(super) fn text(noise: &Noise) -> String {
+pub(crate) fn text(noise: &Noise) -> String {
     let share =
         noise.share_of_others().map(|share| format!("others had {:.1} % of the machine", share * 100.0));
     let stolen = noise.stolen.filter(|stolen| !stolen.is_zero());
@@ -24,7 +24,7 @@ pub(super) fn text(noise: &Noise) -> String {
 
 /// What is unknown is null.
 #[derive(Serialize)]
-pub(super) struct Object {
+pub(crate) struct Object {
     wall_s: f64,
     foreign_cpu_s: Option<f64>,
     stolen_s: Option<f64>,
