@@ -16,6 +16,16 @@ pub fn load(path: Option<&Path>) -> Result<(String, SceneFile), String> {
     })
 }
 
+/// The most pixels of a picture where each may be a piece of which a record is kept.
+///
+/// `explain` keeps 32 bytes of each piece of a strategy's quickest rendering. Three of all strategies deal in pixels: 96
+/// bytes a pixel; tiles are few. While one more rendering is recorded there is room for half as many pieces again, 48
+/// bytes a pixel; then its gaps are sorted, 8 bytes; and the picture has 12. Together 164 bytes, of 2^23 pixels 1.4 GB.
+///
+/// `predict` keeps 8 bytes of 16 pixels for each rendering, of which there are 41 at most where pictures are so large, and
+/// twice the 8 bytes a pixel that come of it: 37 bytes a pixel, 0.3 GB. The picture is there once for each core, 0.1 GB.
+const MAX_PIXELS: u64 = 1 << 23;
+
 /// A scene with the command line's overrides.
 pub struct Input {
     /// What results call it.
@@ -84,6 +94,11 @@ impl Input {
         Image::new(self.width, self.height).map_err(|e: ImageError| e.to_string())
     }
 
+    /// The width and height of the picture, if a record of each pixel can be kept.
+    pub fn recordable_size(&self) -> Result<(u32, u32), String> {
+        recordable(self.width, self.height)
+    }
+
     /// What is rendered, and how: two lines, and another one if something of it is left out.
     pub fn describe(&self) -> String {
         let Self { name, width, height, .. } = self;
@@ -111,5 +126,29 @@ impl Input {
     pub fn arithmetic_line(&self) -> String {
         let Arithmetic { formulas, precision } = self.execution.arithmetic;
         format!("arithmetic: {formulas} formulas in {precision}; {}", self.reason)
+    }
+}
+
+fn recordable(width: u32, height: u32) -> Result<(u32, u32), String> {
+    if u64::from(width) * u64::from(height) > MAX_PIXELS {
+        return Err(format!(
+            "{width} x {height} pixels are too many to record each: at most {MAX_PIXELS}, use a smaller --size"
+        ));
+    }
+    Ok((width, height))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_largest_picture_of_which_each_pixel_is_recorded() {
+        assert_eq!(recordable(4096, 2048), Ok((4096, 2048)));
+        let error = recordable(2048, 4097).expect_err("a row more");
+        let expected =
+            "2048 x 4097 pixels are too many to record each: at most 8388608, use a smaller --size";
+        assert_eq!(error, expected);
+        assert!(recordable(65535, 65535).is_err());
     }
 }

@@ -66,7 +66,7 @@ fn requests_that_cannot_be_met_are_refused_before_any_work() {
     let folder = folder();
     fs::write(folder.path().join("file"), "").expect("written");
     for (arguments, expected) in [
-        ("explain --size 4097x4096", "use a smaller --size"),
+        ("explain --size 4097x2048", "use a smaller --size"),
         ("explain --strategy nope", "sequential"),
         ("explain --threads 1,2", "1..=1024"),
         ("explain --json a.json --trace a.json", "named twice"),

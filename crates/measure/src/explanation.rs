@@ -103,12 +103,32 @@ impl Row {
 struct Series<'a> {
     strategy: &'a dyn Strategy,
     threads: NonZeroUsize,
-    recorded: bool,
+    recording: Recording,
     /// For the pieces of a thread.
     room: usize,
     wall_ns: Vec<u64>,
     /// Of the recorded renderings.
-    quickest: Option<Timeline>,
+    quickest: Option<Recorded>,
+}
+
+/// Whether renderings are recorded, and what is kept of it.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Recording {
+    /// They are plain.
+    Off,
+    /// The sums.
+    Account,
+    /// The sums and every piece, which may be as many as pixels.
+    Timeline,
+}
+
+/// What is kept of a recorded rendering.
+struct Recorded {
+    wall_ns: u64,
+    account: Account,
+    long_gap_ns: f64,
+    /// Empty unless it is asked for.
+    timeline: Timeline,
 }
 
 /// Of a strategy, the places of its series.
@@ -134,18 +154,19 @@ impl Experiment<'_> {
         let mut image = Image::new(self.size.0, self.size.1)?;
         let cost = Cost::here();
         let mut series = vec![
-            Series::new(self.reference, NonZeroUsize::MIN, false),
-            Series::new(self.reference, NonZeroUsize::MIN, true),
+            Series::new(self.reference, NonZeroUsize::MIN, Recording::Off),
+            Series::new(self.reference, NonZeroUsize::MIN, Recording::Account),
         ];
         let mut places = Vec::with_capacity(strategies.len());
         for &strategy in strategies {
-            let mut add = |threads, recorded| {
-                series.push(Series::new(strategy, threads, recorded));
+            let mut add = |threads, recording| {
+                series.push(Series::new(strategy, threads, recording));
                 series.len() - 1
             };
-            let recorded = add(threads, true);
-            let alone = if threads.get() == 1 { recorded } else { add(NonZeroUsize::MIN, true) };
-            places.push(Places { alone, plain: add(threads, false), recorded });
+            let recorded = add(threads, Recording::Timeline);
+            let alone =
+                if threads.get() == 1 { recorded } else { add(NonZeroUsize::MIN, Recording::Account) };
+            places.push(Places { alone, plain: add(threads, Recording::Off), recorded });
         }
 
         let begin = Instant::now();
@@ -154,7 +175,7 @@ impl Experiment<'_> {
         while let Some(turn) = schedule.next(begin.elapsed()) {
             progress(turn.fraction);
             let series = &mut series[turn.entry];
-            series.render(self, &mut image, turn.round.is_some())?;
+            series.render(self, cost, &mut image, turn.round.is_some())?;
             let found = image.digest();
             if *digest.get_or_insert(found) != found {
                 return Err(ExplainError::Different { strategy: series.strategy.name() });
@@ -163,7 +184,7 @@ impl Experiment<'_> {
         Ok(Explanation {
             reference: self.reference.name(),
             reference_ns: series[0].shortest_ns(),
-            rows: places.iter().map(|places| row(&series, places, cost)).collect(),
+            rows: places.iter().map(|places| row(&mut series, places, cost)).collect(),
             digest: digest.unwrap_or_else(|| image.digest()),
             rounds: schedule.rounds(),
             cost,
@@ -171,7 +192,8 @@ impl Experiment<'_> {
     }
 }
 
-fn row(series: &[Series<'_>], &Places { alone, plain, recorded }: &Places, cost: Cost) -> Row {
+/// Takes the time line out of the series.
+fn row(series: &mut [Series<'_>], &Places { alone, plain, recorded }: &Places, cost: Cost) -> Row {
     let threads = series[plain].threads.get();
     let wall_ns = series[plain].shortest_ns();
     // The first two are the reference's.
@@ -184,26 +206,27 @@ fn row(series: &[Series<'_>], &Places { alone, plain, recorded }: &Places, cost:
         lost_ns: threads as f64 * wall_ns - series[0].shortest_ns(),
         losses: Losses::between(&sequential, &on_one, &on_all),
         recorded: over_plain.unwrap_or(Interval { median: 1.0, low: 1.0, high: 1.0 }),
-        long_gap_ns: series[alone].quickest.as_ref().map_or(0.0, long_gap_ns),
-        timeline: series[recorded].quickest.clone().unwrap_or_default(),
+        long_gap_ns: series[alone].quickest.as_ref().map_or(0.0, |quickest| quickest.long_gap_ns),
+        timeline: series[recorded].quickest.take().map(|quickest| quickest.timeline).unwrap_or_default(),
     }
 }
 
 impl<'a> Series<'a> {
-    fn new(strategy: &'a dyn Strategy, threads: NonZeroUsize, recorded: bool) -> Self {
-        Self { strategy, threads, recorded, room: 0, wall_ns: Vec::new(), quickest: None }
+    fn new(strategy: &'a dyn Strategy, threads: NonZeroUsize, recording: Recording) -> Self {
+        Self { strategy, threads, recording, room: 0, wall_ns: Vec::new(), quickest: None }
     }
 
     /// Renders one picture, and takes note of it if it `counts`.
     fn render(
         &mut self,
         experiment: &Experiment<'_>,
+        cost: Cost,
         image: &mut Image,
         counts: bool,
     ) -> Result<(), ExplainError> {
         let plan = Plan { threads: self.threads, tile: experiment.tile };
-        let recorder =
-            self.recorded.then(|| TimeRecorder::new(experiment.work, self.threads.get(), self.room));
+        let recorder = (self.recording != Recording::Off)
+            .then(|| TimeRecorder::new(experiment.work, self.threads.get(), self.room));
         let work = recorder.as_ref().map_or(experiment.work, |recorder| recorder as &dyn Work);
         let mut renderer = attempt(|| self.strategy.prepare(plan)).map_err(ExplainError::Failed)?;
         poison::fill(image);
@@ -225,7 +248,12 @@ impl<'a> Series<'a> {
             self.quickest.as_ref().is_none_or(|quickest| timeline.wall_ns < quickest.wall_ns)
         };
         if let Some(timeline) = timeline.filter(is_quicker) {
-            self.quickest = Some(timeline);
+            self.quickest = Some(Recorded {
+                wall_ns: timeline.wall_ns,
+                account: Account::of(&timeline, self.threads.get(), cost),
+                long_gap_ns: long_gap_ns(&timeline),
+                timeline: if self.recording == Recording::Timeline { timeline } else { Timeline::default() },
+            });
         }
         Ok(())
     }
@@ -236,8 +264,8 @@ impl<'a> Series<'a> {
 
     /// Of the quickest recorded rendering; of none if there is none.
     fn account(&self, cost: Cost) -> Account {
-        let none = Timeline::default();
-        Account::of(self.quickest.as_ref().unwrap_or(&none), self.threads.get(), cost)
+        let of_none = || Account::of(&Timeline::default(), self.threads.get(), cost);
+        self.quickest.as_ref().map_or_else(of_none, |quickest| quickest.account)
     }
 }
 

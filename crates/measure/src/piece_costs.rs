@@ -7,7 +7,7 @@ use std::num::NonZeroU32;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
-/// Pixels that share a reading of the clock, which takes as long as a cheap pixel.
+/// Pixels that share a reading of the clock, which takes as long as a cheap pixel, and what it reads.
 const RUN: usize = 16;
 
 /// What a picture is cut into.
@@ -38,6 +38,11 @@ impl Cut {
         [Self::Pixels, Self::Rows, Self::Tiles, Self::Whole].into_iter().filter(is_needed).collect()
     }
 
+    /// Pieces that are timed together.
+    fn run(self) -> usize {
+        if self == Self::Pixels { RUN } else { 1 }
+    }
+
     fn name(self) -> &'static str {
         match self {
             Self::Pixels => "pixels one by one",
@@ -53,17 +58,23 @@ impl Cut {
 #[derive(Debug)]
 pub struct OneByOne {
     cut: Cut,
-    passes: Passes,
+    log: Arc<Mutex<Log>>,
 }
 
-/// Of each rendering the nanoseconds of every piece.
-type Passes = Arc<Mutex<Vec<Vec<f64>>>>;
+/// What was measured.
+#[derive(Debug, Default)]
+struct Log {
+    /// Of a rendering.
+    pieces: usize,
+    /// Of each rendering the nanoseconds of every [run](Cut::run) of pieces, the last of which may be shorter.
+    passes: Vec<Vec<f64>>,
+}
 
 impl OneByOne {
     /// Nothing is drawn yet.
     #[must_use]
     pub fn new(cut: Cut) -> Self {
-        Self { cut, passes: Passes::default() }
+        Self { cut, log: Arc::default() }
     }
 
     /// Nanoseconds of every piece: among themselves as in the lower quartile of all renderings, undisturbed, and
@@ -71,8 +82,8 @@ impl OneByOne {
     /// cheaper beside other kinds than it is.
     #[must_use]
     pub fn costs(&self, total: f64) -> Vec<f64> {
-        let passes = self.passes.lock().unwrap_or_else(PoisonError::into_inner);
-        scaled(&passes, total)
+        let log = self.log.lock().unwrap_or_else(PoisonError::into_inner);
+        spread(&scaled(&log.passes, total), self.cut.run(), log.pieces)
     }
 }
 
@@ -100,14 +111,14 @@ impl Strategy for OneByOne {
     }
 
     fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
-        Ok(Box::new(Timing { cut: self.cut, tile: plan.tile, passes: Arc::clone(&self.passes) }))
+        Ok(Box::new(Timing { cut: self.cut, tile: plan.tile, log: Arc::clone(&self.log) }))
     }
 }
 
 struct Timing {
     cut: Cut,
     tile: NonZeroU32,
-    passes: Passes,
+    log: Arc<Mutex<Log>>,
 }
 
 impl Renderer for Timing {
@@ -128,36 +139,47 @@ impl Renderer for Timing {
             // Tiles larger than the picture: one.
             Cut::Whole => image.tiles(NonZeroU32::MAX).iter_mut().map(timed).collect(),
         };
-        self.passes.lock().unwrap_or_else(PoisonError::into_inner).push(costs?);
+        let costs = costs?;
+        let mut log = self.log.lock().unwrap_or_else(PoisonError::into_inner);
+        log.pieces = if self.cut == Cut::Pixels { image.pixels().len() } else { costs.len() };
+        log.passes.push(costs);
         Ok(())
     }
 }
 
-/// Draws the pixels, and takes the time of [`RUN`] of them at once.
+/// Draws the pixels, and takes the times of [`RUN`] of them together.
 fn pixels(work: &dyn Work, image: &mut Image) -> Result<Vec<f64>, StrategyError> {
     let width = image.width() as usize;
-    let mut costs = Vec::with_capacity(image.pixels_mut().len());
+    let mut costs = Vec::with_capacity(image.pixels().len().div_ceil(RUN));
     for (run, colors) in image.pixels_mut().chunks_mut(RUN).enumerate() {
-        let pixels = colors.len();
         let begin = Instant::now();
         for (index, color) in (run * RUN..).zip(colors) {
             let mut tile = Tile::pixel((index % width) as u32, (index / width) as u32, color);
             render_tile(Cut::Pixels.name(), work, &mut tile)?;
         }
-        let cost = begin.elapsed().as_nanos() as f64 / pixels as f64;
-        costs.resize(costs.len() + pixels, cost);
+        costs.push(begin.elapsed().as_nanos() as f64);
     }
     Ok(costs)
 }
 
-/// See [`OneByOne::costs`].
+/// See [`OneByOne::costs`]; here of runs.
 fn scaled(passes: &[Vec<f64>], total: f64) -> Vec<f64> {
-    let pieces = passes.first().map_or(0, Vec::len);
-    let quartile = |piece: usize| lower_quartile(&passes.iter().map(|pass| pass[piece]).collect::<Vec<_>>());
-    let quartiles: Vec<f64> = (0..pieces).filter_map(quartile).collect();
+    let runs = passes.first().map_or(0, Vec::len);
+    let quartile = |run: usize| lower_quartile(&passes.iter().map(|pass| pass[run]).collect::<Vec<_>>());
+    let quartiles: Vec<f64> = (0..runs).filter_map(quartile).collect();
     let sum: f64 = quartiles.iter().sum();
     let factor = if sum > 0.0 { total / sum } else { 1.0 };
     quartiles.into_iter().map(|cost| cost * factor).collect()
+}
+
+/// Each of `pieces` pieces has an even share of its run's cost; a run has `length` of them, or what is left.
+fn spread(runs: &[f64], length: usize, pieces: usize) -> Vec<f64> {
+    let mut costs = Vec::with_capacity(pieces);
+    for run in runs {
+        let length = length.min(pieces - costs.len());
+        costs.resize(costs.len() + length, run / length as f64);
+    }
+    costs
 }
 
 /// Nanoseconds of every piece, by the kind of piece, in the order of their numbers; of kinds not measured none.
@@ -219,8 +241,8 @@ mod tests {
     use crate::synthetic::even;
     use std::num::NonZeroUsize;
 
-    /// What `cut` of a picture of 7 x 5 pixels, in tiles of 4, costs after two renderings.
-    fn costs(cut: Cut, total: f64) -> Vec<f64> {
+    /// `cut` of a picture of 7 x 5 pixels, in tiles of 4, after two renderings.
+    fn drawn(cut: Cut) -> OneByOne {
         let one_by_one = OneByOne::new(cut);
         let plan = Plan { threads: NonZeroUsize::MIN, tile: NonZeroU32::new(4).expect("not 0") };
         let mut image = Image::new(7, 5).expect("a picture");
@@ -228,16 +250,28 @@ mod tests {
             let mut renderer = one_by_one.prepare(plan).expect("prepared");
             renderer.render(&even(50), &mut image).expect("drawn");
         }
-        one_by_one.costs(total)
+        one_by_one
     }
 
-    /// Catches pictures that are cut wrongly.
+    /// Catches pictures that are cut wrongly, and pixels that are remembered one by one.
     #[test]
     fn every_piece_has_a_cost() {
-        let pieces = [Cut::Pixels, Cut::Rows, Cut::Tiles, Cut::Whole].map(|cut| costs(cut, 1.0).len());
-        assert_eq!(pieces, [35, 5, 2 * 2, 1]);
-        let sum: f64 = costs(Cut::Rows, 1e6).iter().sum();
-        assert!((sum - 1e6).abs() < 1.0, "{sum}");
+        let cuts = [Cut::Pixels, Cut::Rows, Cut::Tiles, Cut::Whole].map(drawn);
+        assert_eq!(cuts.each_ref().map(|cut| cut.costs(1.0).len()), [35, 5, 2 * 2, 1]);
+        let remembered =
+            |cut: &OneByOne| cut.log.lock().expect("no panic").passes.iter().map(Vec::len).sum::<usize>();
+        assert_eq!(cuts.each_ref().map(remembered), [3, 5, 2 * 2, 1].map(|runs| 2 * runs));
+        for cut in cuts {
+            let sum: f64 = cut.costs(1e6).iter().sum();
+            assert!((sum - 1e6).abs() < 1.0, "{sum}");
+        }
+    }
+
+    #[test]
+    fn a_run_is_shared_evenly() {
+        assert_eq!(spread(&[8.0, 4.0, 3.0], 2, 5), [4.0, 4.0, 2.0, 2.0, 3.0]);
+        assert_eq!(spread(&[8.0, 4.0], 1, 2), [8.0, 4.0]);
+        assert!(spread(&[], 16, 0).is_empty());
     }
 
     #[test]

@@ -138,6 +138,8 @@ impl<'a> TimeRecorder<'a> {
                 piece.begin_ns = piece.begin_ns.saturating_sub(before);
                 piece.end_ns = piece.end_ns.saturating_sub(before);
             }
+            // There was room for more than there are.
+            pieces.shrink_to_fit();
             Lane { name, pieces }
         };
         let mut lanes: Vec<Lane> = lanes.taken.into_iter().map(lane).collect();

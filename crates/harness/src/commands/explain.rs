@@ -46,21 +46,13 @@ pub struct Arguments {
 const PROTOCOL: Protocol =
     Protocol { min_rounds: 6, max_rounds: 200, budget: Duration::from_secs(20), goal: None, seed: 1 };
 
-/// The most pixels of a picture: each may be a piece of which a record is kept, three times 40 bytes at the most.
-const MAX_PIXELS: u64 = 1 << 24;
-
 pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     distinct_files(&[&arguments.scene, &arguments.json, &arguments.trace])?;
     let [json, trace] =
         [&arguments.json, &arguments.trace].map(|path| path.as_deref().map(PendingFile::create).transpose());
     let (json, trace) = (json?, trace?);
     let input = Input::load(arguments.scene.as_deref(), &arguments.options)?;
-    let (width, height) = (input.width, input.height);
-    if u64::from(width) * u64::from(height) > MAX_PIXELS {
-        return Err(format!(
-            "{width} x {height} pixels are too many to record each: at most {MAX_PIXELS}, use a smaller --size"
-        ));
-    }
+    let (width, height) = input.recordable_size()?;
     let recommended = [rayweave_registry::recommended()];
     let strategies =
         distinct(if arguments.strategy.is_empty() { &recommended } else { &arguments.strategy }, |s| {

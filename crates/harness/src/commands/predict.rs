@@ -44,15 +44,16 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let json = arguments.json.as_deref().map(PendingFile::create).transpose()?;
     let svg = arguments.svg.as_deref().map(PendingFile::create).transpose()?;
     let input = Input::load(arguments.scene.as_deref(), &arguments.options)?;
-    let tile = arguments.tile.of(input.width, input.height)?;
+    let (width, height) = input.recordable_size()?;
+    let tile = arguments.tile.of(width, height)?;
     let strategies = chosen(&arguments.strategy);
     let mut threads = arguments.threads.concat();
     threads.sort_unstable();
     threads.dedup();
-    let work = input.work(input.width, input.height)?;
+    let work = input.work(width, height)?;
     let question = Question {
         work: &*work,
-        size: (input.width, input.height),
+        size: (width, height),
         tile,
         reference: rayweave_registry::reference(),
         strategies: &strategies,
@@ -74,8 +75,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let forecast = forecast.map_err(|e| format!("{}: {e}", input.name))?;
     let report = Report {
         scene: &input.name,
-        width: input.width,
-        height: input.height,
+        width,
+        height,
         tile: tile.get(),
         forecast: &forecast,
         machine: &machine,

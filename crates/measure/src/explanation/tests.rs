@@ -94,6 +94,28 @@ fn what_is_wrong_is_not_explained() {
     assert_eq!(failed.to_string(), "refuses: unavailable here: not today");
 }
 
+/// Catches records of all pixels that are kept though nobody sees them, or with room for more.
+#[test]
+fn only_what_is_shown_is_kept() {
+    let protocol = Protocol { min_rounds: 1, max_rounds: 1, budget: Duration::ZERO, goal: None, seed: 1 };
+    let reference = &Obedience::AllOfThem;
+    let experiment = Experiment { work: &Grey, size: (5, 4), tile: SIDE, reference, protocol };
+    let free = Cost { inside_ns: 0.0, outside_ns: 0.0 };
+    let kept = |recording| {
+        let mut series = Series::new(reference, NonZeroUsize::MIN, recording);
+        let mut image = Image::new(5, 4).expect("a picture");
+        for counts in [false, true] {
+            series.render(&experiment, free, &mut image, counts).expect("drawn");
+        }
+        series.quickest.map(|quickest| quickest.timeline)
+    };
+    assert_eq!(kept(Recording::Off), None);
+    assert_eq!(kept(Recording::Account), Some(Timeline { wall_ns: 0, lanes: Vec::new() }));
+    let timeline = kept(Recording::Timeline).expect("recorded");
+    let pieces = &timeline.lanes[0].pieces;
+    assert_eq!((pieces.len(), pieces.capacity()), (6, 6));
+}
+
 #[test]
 fn a_long_gap_is_longer_than_999_of_1000() {
     let mut end = 0;
