@@ -1,5 +1,6 @@
 //! The options that several commands share, and how their values are read.
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use rayweave_core::scene::MAX_ANTIALIASING;
 use rayweave_core::{Formulas, Lanes, Sampling, Search, Strategy};
@@ -234,13 +235,14 @@ pub fn checked_tile(tile: NonZeroU32, width: u32, height: u32) -> Result<NonZero
     ))
 }
 
-/// A strategy by its name, for clap.
-pub fn parse_strategy(name: &str) -> Result<&'static dyn Strategy, String> {
-    let strategy = rayweave_registry::find(name).ok_or_else(|| {
-        let names: Vec<&str> = STRATEGIES.iter().map(|strategy| strategy.name()).collect();
-        format!("there is no such strategy; there are {}", names.join(", "))
-    })?;
-    strategy.unavailable().map_or(Ok(strategy), |reason| Err(format!("unavailable here: {reason}")))
+/// A strategy by its name, for clap, which suggests one that is written alike.
+pub fn strategy_parser() -> impl TypedValueParser<Value = &'static dyn Strategy> {
+    let names = STRATEGIES.iter().map(|strategy| strategy.name());
+    PossibleValuesParser::new(names).try_map(|name| {
+        let strategy =
+            rayweave_registry::find(&name).ok_or_else(|| "there is no such strategy".to_owned())?;
+        strategy.unavailable().map_or(Ok(strategy), |reason| Err(format!("unavailable here: {reason}")))
+    })
 }
 
 /// Those that were asked for, each once; without any, all that are available here.

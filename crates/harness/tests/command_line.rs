@@ -144,6 +144,7 @@ fn requests_that_cannot_be_met_are_refused_before_any_work() {
         ("render --tile 0", "0"),
         ("render --strategy nope", "sequential"),
         ("compare --strategy sequential,nope", "nope"),
+        ("compare --strategy tile-qeue", "a similar value exists: 'tile-queue'"),
         ("render --precision f16", "f32"),
         ("render --lanes 3", "auto"),
         ("render --share-samples maybe", "both"),

@@ -106,14 +106,14 @@ fn requests_that_cannot_be_met_are_refused() {
         ("predict --threads 1..1025", "1..=1024"),
         ("predict --threads 8..2", "2..8"),
         ("predict --threads many", "1..=1024"),
-        ("predict --strategy nope", "there is no such strategy"),
+        ("predict --strategy nope", "sequential"),
         ("predict missing.toml", "missing.toml: cannot be read"),
         ("predict --svg folder", "it is a folder"),
         ("predict --json a.json --svg a.json", "named twice"),
         ("predict --tile 0", "0"),
         ("predict --size 4097x2048", "too many to record each: at most 8388608, use a smaller --size"),
         ("overhead --threads 1025", "1..=1024"),
-        ("overhead --strategy nope", "there is no such strategy"),
+        ("overhead --strategy nope", "sequential"),
         ("overhead --json missing/a.json", "no folder missing"),
     ];
     for (arguments, expected) in cases {

@@ -2,7 +2,7 @@
 
 use crate::input::Input;
 use crate::options::{
-    SceneOptions, all_threads, checked_tile, chosen, distinct, left_out_line, parse_strategy, parse_threads,
+    SceneOptions, all_threads, checked_tile, chosen, distinct, left_out_line, parse_threads, strategy_parser,
 };
 use crate::output::{PendingFile, distinct_files};
 use crate::{Outcome, print, progress};
@@ -20,7 +20,7 @@ pub struct Arguments {
     /// Scene file [default: the report's scene, built in]
     scene: Option<PathBuf>,
     /// Strategies to check [default: all]
-    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = parse_strategy)]
+    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = strategy_parser())]
     strategy: Vec<&'static dyn Strategy>,
     /// Numbers of computing threads [default: 1, 2, 3, all and twice as many for awkward sizes,
     /// all for the full size]

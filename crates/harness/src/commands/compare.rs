@@ -4,7 +4,7 @@ use crate::child::Children;
 use crate::input::Input;
 use crate::options::{
     SceneOptions, SharingOption, TileOption, all_threads, chosen, distinct, left_out_line, parse_percent,
-    parse_seconds, parse_strategy, parse_threads,
+    parse_seconds, parse_threads, strategy_parser,
 };
 use crate::output::{PendingFile, distinct_files};
 use crate::progress::Share;
@@ -33,7 +33,7 @@ pub struct Arguments {
 #[derive(Args)]
 pub struct Options {
     /// Strategies to time [default: all]
-    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = parse_strategy)]
+    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = strategy_parser())]
     strategy: Vec<&'static dyn Strategy>,
     /// Numbers of computing threads [default: what the machine and its quota allow]
     #[arg(long, value_name = "N", value_delimiter = ',', value_parser = parse_threads)]

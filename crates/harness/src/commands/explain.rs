@@ -1,7 +1,7 @@
 //! `rayweave explain`: why a strategy loses what it loses.
 
 use crate::input::Input;
-use crate::options::{SceneOptions, TileOption, all_threads, distinct, parse_strategy, parse_threads};
+use crate::options::{SceneOptions, TileOption, all_threads, distinct, parse_threads, strategy_parser};
 use crate::output::{PendingFile, distinct_files};
 use crate::picture::Format;
 use crate::progress::Share;
@@ -22,7 +22,7 @@ pub struct Arguments {
     /// Scene file [default: the report's scene, built in]
     scene: Option<PathBuf>,
     /// Strategies to explain [default: the recommended one]
-    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = parse_strategy)]
+    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = strategy_parser())]
     strategy: Vec<&'static dyn Strategy>,
     /// Number of computing threads [default: what the machine and its quota allow]
     #[arg(long, value_name = "N", value_parser = parse_threads)]

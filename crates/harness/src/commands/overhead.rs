@@ -1,6 +1,6 @@
 //! `rayweave overhead`: what strategies cost beside their work.
 
-use crate::options::{all_threads, chosen, parse_seconds, parse_strategy, parse_threads};
+use crate::options::{all_threads, chosen, parse_seconds, parse_threads, strategy_parser};
 use crate::output::PendingFile;
 use crate::progress::Share;
 use crate::{Outcome, print};
@@ -16,7 +16,7 @@ use std::time::Duration;
 #[derive(Args)]
 pub struct Arguments {
     /// Strategies to measure [default: all]
-    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = parse_strategy)]
+    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = strategy_parser())]
     strategy: Vec<&'static dyn Strategy>,
     /// Number of computing threads [default: what the machine and its quota allow]
     #[arg(long, value_name = "N", value_parser = parse_threads)]

@@ -1,7 +1,7 @@
 //! `rayweave predict`: what more threads would make of a picture.
 
 use crate::input::Input;
-use crate::options::{SceneOptions, TileOption, all_threads, chosen, parse_strategy, parse_thread_counts};
+use crate::options::{SceneOptions, TileOption, all_threads, chosen, parse_thread_counts, strategy_parser};
 use crate::output::{PendingFile, distinct_files};
 use crate::progress::Share;
 use crate::{Outcome, print};
@@ -19,7 +19,7 @@ pub struct Arguments {
     /// Scene file [default: the report's scene, built in]
     scene: Option<PathBuf>,
     /// Strategies to predict [default: all that start threads]
-    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = parse_strategy)]
+    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = strategy_parser())]
     strategy: Vec<&'static dyn Strategy>,
     /// Numbers of computing threads, each 1..=1024: a list, in which A..B stands for A, B and the powers of two between
     #[arg(long, value_name = "N,A..B", value_delimiter = ',', value_parser = parse_thread_counts, default_value = "1..64")]

@@ -1,7 +1,7 @@
 //! `rayweave render`: a picture.
 
 use crate::input::Input;
-use crate::options::{SceneOptions, TileOption, all_threads, parse_strategy, parse_threads};
+use crate::options::{SceneOptions, TileOption, all_threads, parse_threads, strategy_parser};
 use crate::output::{PendingFile, distinct_files};
 use crate::picture::Format;
 use crate::progress::Watched;
@@ -21,7 +21,7 @@ pub struct Arguments {
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Strategy to render with [default: the recommended one]
-    #[arg(long, value_name = "NAME", value_parser = parse_strategy)]
+    #[arg(long, value_name = "NAME", value_parser = strategy_parser())]
     strategy: Option<&'static dyn Strategy>,
     /// Number of computing threads [default: what the machine and its quota allow]
     #[arg(long, value_name = "N", value_parser = parse_threads)]

@@ -2,7 +2,7 @@
 
 use crate::child::{Answer, Rendered};
 use crate::input::Input;
-use crate::options::{SceneOptions, TileOption, parse_strategy, parse_threads};
+use crate::options::{SceneOptions, TileOption, parse_threads, strategy_parser};
 use crate::{Outcome, print};
 use clap::Args;
 use rayweave_core::{Area, Strategy, primary_rays};
@@ -16,7 +16,7 @@ pub struct Arguments {
     /// Scene file [default: the report's scene, built in]
     scene: Option<PathBuf>,
     /// Strategy to render with
-    #[arg(long, value_name = "NAME", value_parser = parse_strategy)]
+    #[arg(long, value_name = "NAME", value_parser = strategy_parser())]
     strategy: &'static dyn Strategy,
     /// Number of computing threads
     #[arg(long, value_name = "N", value_parser = parse_threads)]
