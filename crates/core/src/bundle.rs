@@ -36,7 +36,7 @@ impl<S: Scalar> Bundle<S> {
     /// The cones as `mirror` shows them to `eye`: what it sends on comes straight from the eye's image behind it, but for
     /// the roundings of a hit, of the ray's start and of its direction.
     pub(crate) fn mirrored(scene: &Scene, eye: DVec3, mirror: &scene::Plane) -> Self {
-        let normal = mirror.normal.normalize();
+        let normal = scene::unit(mirror.normal);
         let image = eye - normal * (2.0 * (eye - mirror.point).dot(normal));
         let reach = [eye, image, mirror.point].map(|point| point.abs().max_element());
         Self::around(scene, image, MARGIN * S::ROUNDOFF * reach.iter().sum::<f64>())

@@ -308,6 +308,37 @@ fn rays_along_things() {
     }
 }
 
+/// Catches cones around another point than the eye's image: small things far away, seen in floors and tilted mirrors
+/// near the eye and far from it, and mirrors whose normal is so long or short that its square is no number.
+#[test]
+fn small_things_in_mirrors() {
+    for (i, (point, normal)) in [
+        (v(0.0, -1.0, 0.0), DVec3::Y),
+        (v(0.0, -1.0, 40.0), v(0.3, 1.0, -0.9)),
+        (v(0.5, 1.0, -4.9), v(0.1, 0.8, -0.7)),
+        (v(-3.0, 0.0, 9.0), v(1.0, 0.2, -1.0)),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let mut scene = scene();
+        for step in 0..6 {
+            let along = f64::from(step);
+            scene.spheres.push(sphere(v(along - 2.0, 0.4 * along, -2.0 - 3.0 * along), 0.05 + 0.2 * along));
+            scene.triangles.push(triangle([
+                v(along - 3.0, 1.0, 3.0 - 5.0 * along),
+                v(along - 2.6, 1.0, 3.0 - 5.0 * along),
+                v(along - 3.0, 1.7, 3.0 - 5.0 * along),
+            ]));
+            scene.cylinders.push(cylinder(v(along, 0.2, -3.0 - 4.0 * along), 0.3, 0.1));
+        }
+        for length in [1.0, 1e200, 1e-158, 1e-200] {
+            scene.planes = vec![plane(point, normal * length)];
+            assert_agrees_everywhere(&scene, &format!("mirror {i}, its normal {length:e} long"));
+        }
+    }
+}
+
 // Scenes of whole numbers
 
 /// Few values, so that things meet, touch and lie in each other's planes.
