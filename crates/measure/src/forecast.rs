@@ -23,12 +23,7 @@ use rayweave_core::{Strategy, ThreadsStart, Work};
 use rayweave_predict::fit::{amdahl, usl};
 use rayweave_predict::{Law, Overheads, simulate};
 use std::num::{NonZeroU32, NonZeroUsize};
-use std::time::Duration;
 use thiserror::Error;
-
-/// How long each entry renders in a round: it is as few rounds as there is time for, and the quick ones would be told
-/// by too few renderings.
-const TURN: Duration = Duration::from_millis(250);
 
 /// What is predicted.
 #[derive(Clone, Copy)]
@@ -142,29 +137,33 @@ impl Question<'_> {
         let here: Vec<NonZeroUsize> =
             self.threads.iter().copied().filter(|threads| *threads <= self.available).collect();
         let together = here.iter().filter(|threads| **threads != self.available).chain([&self.available]);
-        let several = together.filter(|threads| threads.get() > 1);
-        let independent: Vec<_> = several.map(|&threads| (threads, Independent::default())).collect();
+        let several: Vec<NonZeroUsize> = together.copied().filter(|threads| threads.get() > 1).collect();
+        let independent = Independent::default();
         let kinds: Vec<Piece> = strategies.iter().map(|strategy| strategy.rule().piece).collect();
         let pieces: Vec<OneByOne> = Cut::for_pieces(&kinds).into_iter().map(OneByOne::new).collect();
 
         let timed = strategies[1..]
             .iter()
             .flat_map(|&strategy| here.iter().map(move |&threads| Entry { strategy, threads }));
-        let beside = independent.iter().map(|(threads, strategy)| Entry { strategy, threads: *threads });
+        let beside = several.iter().map(|&threads| Entry { strategy: &independent, threads });
         let alone = pieces.iter().map(|strategy| Entry { strategy, threads: NonZeroUsize::MIN });
         let entries: Vec<Entry<'_>> = timed.chain(beside).chain(alone).collect();
-        let mut stopwatch = Stopwatch::new(self.work, self.size.0, self.size.1, self.tile)?.filling(TURN);
+        let mut stopwatch = Stopwatch::new(self.work, self.size.0, self.size.1, self.tile)?;
         let comparison = self
             .protocol
             .run(self.reference, &entries, &mut stopwatch, |at| progress(Stage::Renderings, at.fraction))?;
 
+        let Some(reference) = comparison.reference_ns() else {
+            // No row has figures, and the reference's says why.
+            return Ok(Forecast { curves: Vec::new(), unavailable, slowdowns: Vec::new(), comparison });
+        };
         let reference_ns = comparison.rows.first().map(Row::render_ns).unwrap_or_default();
-        let slowdowns: Vec<(usize, Interval)> = independent
-            .iter()
-            .filter_map(|(threads, independent)| Some((threads.get(), independent.slowdown(&reference_ns)?)))
-            .collect();
-        // Without it no row has figures, and each says why.
-        let reference = comparison.reference_ns().unwrap_or(0.0);
+        let slowdown_of = |threads: &NonZeroUsize| {
+            let threads = threads.get();
+            find(&comparison, independent.name(), threads)?.figures?;
+            Some((threads, independent.slowdown(threads, &reference_ns)?))
+        };
+        let slowdowns: Vec<(usize, Interval)> = several.iter().filter_map(slowdown_of).collect();
         let speedup = |pieces: &OneByOne| Some(find(&comparison, pieces.name(), 1)?.figures?.speedup.median);
         let measured: Vec<_> = pieces.iter().filter_map(|pieces| Some((pieces, speedup(pieces)?))).collect();
         let costs = PieceCosts::new(&measured, reference);
@@ -188,7 +187,9 @@ impl Question<'_> {
             let (amdahl, usl) = (amdahl(&own), usl(&own));
             Curve { strategy: name, overheads: overheads[index], points: points.collect(), amdahl, usl }
         };
-        let curves = (1..strategies.len()).map(curve).collect();
+        // Whose pieces could not be timed has no curve, and the row of these pieces says why.
+        let curves = (1..strategies.len()).filter(|&index| costs.know(strategies[index].rule().piece));
+        let curves = curves.map(curve).collect();
         Ok(Forecast { curves, unavailable, slowdowns, comparison })
     }
 }

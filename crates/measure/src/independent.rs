@@ -1,8 +1,9 @@
 //! What cores cost each other: threads that share nothing, each of which draws the whole picture.
 
-use crate::statistics::{Interval, median_ratio_interval};
+use crate::statistics::{Interval, ratio_interval};
 use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule, panic_message, render_tile};
 use rayweave_core::{Image, Plan, Renderer, Strategy, StrategyError, ThreadsStart, Work};
+use std::collections::BTreeMap;
 use std::io;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
@@ -22,18 +23,22 @@ pub struct Independent {
 struct Shared {
     /// Of each thread but the first: no rendering but the first pays for fresh memory.
     copies: Vec<Image>,
-    /// Of each rendering, how long a thread drew, in nanoseconds, in the mean.
-    thread_ns: Vec<f64>,
+    /// Of each rendering, by the number of threads, how many nanoseconds a thread drew, in the mean.
+    thread_ns: BTreeMap<usize, Vec<u64>>,
 }
 
 impl Independent {
-    /// How many times as long as alone, `alone_ns` nanoseconds, a thread drew beside the others; `None` before any
-    /// rendering. Of each rendering the mean of its threads counts, not the last: where work is shared, whoever is not
-    /// disturbed does more of it.
+    /// How many times as long as alone a thread drew with `threads` of them, round by round: in the latest renderings, as
+    /// many as there are times alone, `alone_ns` in nanoseconds. `None` without any.
+    ///
+    /// Of each rendering the mean of its threads counts, not the last: where work is shared, whoever is not disturbed
+    /// does more of it.
     #[must_use]
-    pub fn slowdown(&self, alone_ns: &[u64]) -> Option<Interval> {
-        let alone: Vec<f64> = alone_ns.iter().map(|&ns| ns as f64).collect();
-        median_ratio_interval(&self.shared.lock().unwrap_or_else(PoisonError::into_inner).thread_ns, &alone)
+    pub fn slowdown(&self, threads: usize, alone_ns: &[u64]) -> Option<Interval> {
+        let shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
+        let times = shared.thread_ns.get(&threads)?;
+        // Before them there are those of the warm-up.
+        ratio_interval(&times[times.len().saturating_sub(alone_ns.len())..], alone_ns)
     }
 }
 
@@ -80,23 +85,29 @@ impl Renderer for Copying {
             image.tiles(self.plan.tile).iter_mut().try_for_each(|tile| render_tile(NAME, work, tile))?;
             Ok(begin.elapsed())
         };
-        let sum = thread::scope(|scope| {
+        let drawn = thread::scope(|scope| {
             let others = copies[..threads - 1].iter_mut().map(|copy| {
                 let thread = thread::Builder::new().name(NAME.to_owned());
                 thread.spawn_scoped(scope, || draw(copy)).map_err(cannot_start)
             });
             let others = others.collect::<Result<Vec<_>, _>>()?;
-            let mut sum: Duration = draw(image)?;
+            let mut drawn = vec![draw(image)?];
             for other in others {
-                sum += other
-                    .join()
-                    .map_err(|payload| cannot_start(io::Error::other(panic_message(&*payload))))??;
+                let joined = other.join();
+                drawn.push(
+                    joined.map_err(|payload| cannot_start(io::Error::other(panic_message(&*payload))))??,
+                );
             }
-            Ok(sum)
+            Ok(drawn)
         })?;
-        thread_ns.push(sum.as_nanos() as f64 / threads as f64);
+        thread_ns.entry(threads).or_default().push(mean_ns(&drawn));
         Ok(())
     }
+}
+
+/// A `u64` of nanoseconds lasts for 584 years.
+fn mean_ns(times: &[Duration]) -> u64 {
+    u64::try_from(times.iter().sum::<Duration>().as_nanos() / times.len().max(1) as u128).unwrap_or(u64::MAX)
 }
 
 #[cfg(test)]
@@ -121,17 +132,22 @@ mod tests {
         }
     }
 
-    /// Catches a time that is the sum of the threads' or that of the last: one draws 3 ns, the other 9.
+    /// Catches the sum of the threads' times, and that of the last.
     #[test]
-    fn a_thread_is_slowed_down_by_the_mean() {
+    fn a_rendering_counts_by_the_mean_of_its_threads() {
+        assert_eq!(mean_ns(&[3, 9, 6].map(Duration::from_nanos)), 6);
+    }
+
+    /// Catches a warm-up that is taken for a round, and other numbers of threads.
+    #[test]
+    fn the_latest_renderings_are_those_of_the_rounds() {
         let independent = Independent::default();
-        assert_eq!(independent.slowdown(&[4]), None);
-        let threads = NonZeroUsize::new(2).expect("not 0");
-        let mut renderer = independent.prepare(Plan { threads, tile: NonZeroU32::MIN }).expect("prepared");
-        let begin = Instant::now();
-        renderer.render(&even(20_000), &mut Image::new(16, 16).expect("a picture")).expect("drawn");
-        let wall = begin.elapsed().as_nanos() as u64;
-        let slowdown = independent.slowdown(&[wall]).expect("rendered").median;
-        assert!(slowdown > 0.0 && slowdown <= 1.0, "{slowdown}");
+        assert_eq!(independent.slowdown(2, &[4]), None);
+        let logs = [(2, vec![900, 10, 12, 14]), (3, vec![900, 70])];
+        independent.shared.lock().expect("nobody panicked").thread_ns.extend(logs);
+        let median = |threads, alone: &[u64]| independent.slowdown(threads, alone).map(|found| found.median);
+        assert_eq!(median(2, &[10, 8, 10]), Some(1.4));
+        assert_eq!(median(3, &[10]), Some(7.0));
+        assert_eq!(median(4, &[10]), None);
     }
 }

@@ -77,7 +77,7 @@ impl OneByOne {
         Self { cut, log: Arc::default() }
     }
 
-    /// Nanoseconds of every piece: among themselves as in the lower quartile of all renderings, undisturbed, and
+    /// Nanoseconds of every piece: among themselves as in the lower quartile of all renderings, the warm-up's too, and
     /// together `total`. A short piece finds a moment without disturbance sooner than a long one, and would seem
     /// cheaper beside other kinds than it is.
     #[must_use]
@@ -209,6 +209,17 @@ impl PieceCosts {
         costs
     }
 
+    /// Whether what a strategy needs that deals in such pieces was measured.
+    #[must_use]
+    pub fn know(&self, piece: Piece) -> bool {
+        match piece {
+            Piece::Pixel => !self.pixels.is_empty(),
+            Piece::Row => !self.rows.is_empty(),
+            Piece::Tile => !self.tiles.is_empty(),
+            Piece::Band => !self.rows.is_empty() && self.whole > 0.0,
+        }
+    }
+
     /// What each piece costs where `threads` threads compute, in nanoseconds.
     ///
     /// A band's cost is put together: as its rows at once are cheaper than one by one, each row costs a share of
@@ -279,6 +290,17 @@ mod tests {
         assert_eq!(Cut::for_pieces(&[Piece::Tile, Piece::Tile]), [Cut::Tiles]);
         assert_eq!(Cut::for_pieces(&[Piece::Band, Piece::Pixel]), [Cut::Pixels, Cut::Rows, Cut::Whole]);
         assert_eq!(Cut::for_pieces(&[Piece::Row]), [Cut::Rows]);
+    }
+
+    /// Catches bands that are put together from their rows alone.
+    #[test]
+    fn what_was_not_measured_is_not_known() {
+        let rows = PieceCosts { rows: vec![10.0; 4], ..PieceCosts::default() };
+        assert_eq!(
+            [Piece::Pixel, Piece::Row, Piece::Tile, Piece::Band].map(|piece| rows.know(piece)),
+            [false, true, false, false]
+        );
+        assert!(PieceCosts { whole: 28.0, ..rows }.know(Piece::Band));
     }
 
     /// Rows of 10 each alone, but 28 for all four together: what follows a row costs 6.

@@ -21,8 +21,6 @@ pub struct Stopwatch<'a> {
     begin: Instant,
     /// The primary rays of a tile.
     rays: Option<&'a Cost<'a>>,
-    /// What short renderings fill in each turn.
-    turn: Duration,
 }
 
 impl<'a> Stopwatch<'a> {
@@ -32,15 +30,7 @@ impl<'a> Stopwatch<'a> {
     ///
     /// There is no such picture.
     pub fn new(work: &'a dyn Work, width: u32, height: u32, tile: NonZeroU32) -> Result<Self, ImageError> {
-        let image = Image::new(width, height)?;
-        Ok(Self { work, tile, image, begin: Instant::now(), rays: None, turn: Duration::ZERO })
-    }
-
-    /// In each turn renders as often as `turn` has room for, at least once, and gives the mean: a moment's disturbance
-    /// then weighs as little in a short rendering as in a long one.
-    #[must_use]
-    pub fn filling(self, turn: Duration) -> Self {
-        Self { turn, ..self }
+        Ok(Self { work, tile, image: Image::new(width, height)?, begin: Instant::now(), rays: None })
     }
 
     /// Counts the primary rays of the warm-up, by those of each tile that a strategy cuts; the timed renderings stay
@@ -103,24 +93,7 @@ impl<'a> Stopwatch<'a> {
 
 impl Executor for Stopwatch<'_> {
     fn render(&mut self, entry: &Entry<'_>) -> Result<Rendering, String> {
-        let turn = nanoseconds(self.turn);
-        let mut rendering = self.render_work(self.work, entry)?;
-        let mut sum = rendering.sample;
-        let mut renderings = 1;
-        while sum.render_ns + sum.render_ns / renderings <= turn {
-            let again = self.render_work(self.work, entry)?;
-            sum.prepare_ns += again.sample.prepare_ns;
-            sum.render_ns += again.sample.render_ns;
-            renderings += 1;
-            if again.digest != rendering.digest {
-                // Two pictures of the same: one of them is wrong, and the first may be right.
-                rendering.first_digest = Some(again.digest);
-                break;
-            }
-        }
-        rendering.sample.prepare_ns = sum.prepare_ns / renderings;
-        rendering.sample.render_ns = sum.render_ns / renderings;
-        Ok(rendering)
+        self.render_work(self.work, entry)
     }
 
     fn warm_up(&mut self, entry: &Entry<'_>) -> Result<(Rendering, Option<Rays>), String> {

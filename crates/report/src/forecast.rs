@@ -33,7 +33,8 @@ const ASSUMPTIONS: [&str; 5] = [
     "beside others a thread is slowed down as by all threads of this machine, however many they are",
     "memory bandwidth and caches are no limit but for that",
     "a counter, a lock or a channel costs on many threads what it costs on this machine's, in the order of asking",
-    "threads start one after the other, each as long after the one before as here",
+    "threads start one after the other, each as long after the one before as the second after the first here: its waking up \
+     is in that, so many threads start faster",
 ];
 
 impl Report<'_> {

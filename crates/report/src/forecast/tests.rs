@@ -2,7 +2,7 @@ use super::*;
 use crate::compare::tests::noise;
 use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule};
 use rayweave_core::{Image, ThreadsStart};
-use rayweave_measure::compare::{Role, Row};
+use rayweave_measure::compare::{Figures, Role, Row};
 use rayweave_measure::forecast::{Curve, Point};
 use rayweave_measure::{Comparison, Interval};
 use rayweave_predict::{Law, Overheads};
@@ -22,6 +22,27 @@ fn wrong() -> Row {
         rays: None,
         samples: Vec::new(),
         figures: None,
+    }
+}
+
+/// What all others are compared with: it takes 50 ms.
+fn reference() -> Row {
+    let figures = Figures {
+        median_ns: 50e6,
+        prepare_ns: 0.0,
+        one_shot: None,
+        cpu_ns: None,
+        speedup: Interval { median: 1.0, low: 1.0, high: 1.0 },
+        efficiency: 1.0,
+        serial_fraction: None,
+    };
+    Row {
+        strategy: "alone",
+        role: Role::Reference,
+        threads_start: ThreadsStart::Never,
+        identical: true,
+        figures: Some(figures),
+        ..wrong()
     }
 }
 
@@ -48,7 +69,7 @@ fn forecast() -> Forecast {
         unavailable: vec!["omp: unavailable here: no compiler".to_owned()],
         slowdowns: vec![(2, Interval { median: 1.05, low: 1.0, high: 1.1 })],
         comparison: Comparison {
-            rows: vec![wrong()],
+            rows: vec![reference(), wrong()],
             digest: Image::new(1, 1).expect("a picture").digest(),
             rounds: 6,
             seed: 1,
@@ -83,7 +104,7 @@ fn the_table_predicts_checks_and_says_what_is_assumed() {
     has("omp: unavailable here: no compiler");
     assert!(table.contains("lock, 1 thread: a wrong picture"), "{table}");
     assert!(table.contains("1.050 [1.000, 1.100] times as long"), "{table}");
-    assert!(!table.contains("the reference takes"), "it has no figures: {table}");
+    assert!(table.contains("the reference takes 50.00 ms."), "{table}");
     has(&crate::noise::text(&noise()));
     assert!(ASSUMPTIONS.iter().all(|assumption| table.contains(assumption)), "{table}");
 }
@@ -101,6 +122,7 @@ fn json_has_every_point_and_law() {
     assert_eq!(value["laws"][0]["overheads"]["start_ns"], 90.0);
     assert!(value["laws"][1]["amdahl"].is_null());
     assert_eq!(value["slowdowns"][0]["factor"]["high"], 1.1);
+    assert_eq!(value["reference_median_ns"], 50e6);
     assert_eq!((&value["noise"]["wall_s"], &value["noise"]["disturbed"]), (&10.0.into(), &false.into()));
 }
 
