@@ -1,4 +1,4 @@
-//! Forks N scoped threads, joins them, and lets them stop together: what every strategy with
+//! Forks scoped threads, joins them, and lets them stop together: what every strategy with
 //! hand-spawned threads needs, and no strategy should have to say twice.
 //!
 //! The team is forked at each call of [`run`]; nothing outlives it. The caller's thread is one of its members: that is
@@ -17,7 +17,7 @@ use std::thread::{self, Scope};
 #[derive(Debug)]
 pub struct Stop;
 
-/// Threads that stop together: those that [`run`] starts, or a library's.
+/// Threads that stop together: the members of [`run`], or a library's.
 #[derive(Debug)]
 pub struct Team {
     strategy: &'static str,
