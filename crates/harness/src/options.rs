@@ -136,7 +136,7 @@ pub enum SearchOption {
 #[derive(Args)]
 pub struct TileOption {
     /// Side of a tile in pixels, for the strategies that deal in tiles
-    #[arg(long, value_name = "N", default_value = "32")]
+    #[arg(long, value_name = "N", value_parser = parse_tile, default_value = "32")]
     tile: NonZeroU32,
 }
 
@@ -258,6 +258,11 @@ pub fn left_out_line(asked_for: &[&'static dyn Strategy]) -> String {
         return String::new();
     }
     format!("left out, since unavailable here: {} (`rayweave strategies` says why)\n", names.join(", "))
+}
+
+/// The side of a tile, for clap.
+fn parse_tile(text: &str) -> Result<NonZeroU32, String> {
+    text.parse().map_err(|_| "expected an integer from 1 on".to_owned())
 }
 
 /// A number of threads, for clap.

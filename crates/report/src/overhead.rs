@@ -2,10 +2,10 @@
 
 use crate::json::{self, Ratio};
 use crate::machine::{self, Facts};
-use crate::style;
+use crate::{noise, style};
 use rayweave_core::strategy::Piece;
 use rayweave_measure::overhead::{Figures, LARGEST_SIDE, PIXEL_NS, Row, Study, TASKS, TILE};
-use rayweave_measure::{Interval, Machine};
+use rayweave_measure::{Interval, Machine, Noise};
 use serde::Serialize;
 
 /// It changes when a key changes its meaning or goes.
@@ -36,6 +36,8 @@ pub struct Report<'a> {
     pub study: &'a Study,
     /// What it was measured on.
     pub machine: &'a Machine,
+    /// What else went on there.
+    pub noise: &'a Noise,
 }
 
 impl Report<'_> {
@@ -61,6 +63,7 @@ impl Report<'_> {
              first, later: the first and the third rendering of a small picture after preparing.\n\
              a step of the work takes {step_ns:.2} ns."
         ));
+        lines.push(noise::text(self.noise));
         lines.push(machine::text(self.machine));
         lines.join("\n")
     }
@@ -77,6 +80,7 @@ impl Report<'_> {
             tasks: TASKS,
             break_even_pixel_ns: PIXEL_NS,
             break_even_largest_side: LARGEST_SIDE,
+            noise: self.noise.into(),
             machine: Facts::new(self.machine),
             results: rows.iter().map(Item::new).collect(),
         })
@@ -127,6 +131,7 @@ struct Object<'a> {
     tasks: u32,
     break_even_pixel_ns: f64,
     break_even_largest_side: u32,
+    noise: noise::Object,
     machine: Facts<'a>,
     results: Vec<Item<'a>>,
 }
@@ -169,6 +174,7 @@ impl<'a> Item<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::compare::tests::noise;
     use rayweave_measure::overhead::Failure;
 
     fn study() -> Study {
@@ -196,7 +202,7 @@ mod tests {
     #[test]
     fn the_table_has_figures_and_complaints() {
         let (study, machine) = (study(), Machine::here());
-        let table = Report { study: &study, machine: &machine }.table();
+        let table = Report { study: &study, machine: &machine, noise: &noise() }.table();
         let line = |name: &str| {
             let line = table.lines().find(|line| line.starts_with(name)).unwrap_or_else(|| panic!("{table}"));
             line.split_whitespace().collect::<Vec<_>>().join(" ")
@@ -210,9 +216,10 @@ mod tests {
     #[test]
     fn json_keeps_nanoseconds_and_says_why_there_are_none() {
         let (study, machine) = (study(), Machine::here());
-        let text = Report { study: &study, machine: &machine }.json();
+        let text = Report { study: &study, machine: &machine, noise: &noise() }.json();
         let value: serde_json::Value = serde_json::from_str(&text).expect("JSON");
         let [rows, bands, none] = [0, 1, 2].map(|index| &value["results"][index]);
+        assert!(value["noise"]["disturbed"].is_boolean(), "{text}");
         assert_eq!((&rows["metg_ns"], &rows["dispatch_all_ns"]["high"]), (&234.0.into(), &81.0.into()));
         assert!(bands["dispatch_one_ns"].is_null() && bands["error"].is_null());
         assert!(none["prepare_ns"].is_null());

@@ -6,6 +6,7 @@ use crate::progress::Share;
 use crate::{Outcome, print};
 use clap::Args;
 use rayweave_core::Strategy;
+use rayweave_measure::noise::Watch;
 use rayweave_measure::overhead::Overhead;
 use rayweave_measure::{Machine, Protocol};
 use rayweave_report::overhead::Report;
@@ -42,13 +43,14 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
         threads: arguments.threads.unwrap_or_else(all_threads),
         protocol: Protocol { budget: arguments.time_limit.unwrap_or(PROTOCOL.budget), ..PROTOCOL },
     };
-    let bar = Share::new();
+    let (bar, watch) = (Share::new(), Watch::start());
     let study = overhead.run(|strategy, fraction| {
         bar.show(fraction, strategy.to_owned());
     });
     drop(bar);
-    let (study, machine) = (study.map_err(|e| e.to_string())?, Machine::here());
-    let report = Report { study: &study, machine: &machine };
+    let machine = Machine::here();
+    let (study, noise) = (study.map_err(|e| e.to_string())?, watch.finish(machine.logical_cores));
+    let report = Report { study: &study, machine: &machine, noise: &noise };
     print(&format!("{}\n", report.table()))?;
     json.map_or(Ok(()), |file| file.finish(report.json().as_bytes()))?;
     Ok(if study.holds() { Outcome::Held } else { Outcome::Failed })

@@ -20,6 +20,7 @@ impl Work for Grey {
 #[derive(Clone, Copy)]
 enum Obedience {
     AllOfThem,
+    Alone,
     AllButTheFirst,
     Refuses,
 }
@@ -28,6 +29,7 @@ impl Strategy for Obedience {
     fn name(&self) -> &'static str {
         match self {
             Self::AllOfThem => "all",
+            Self::Alone => "alone",
             Self::AllButTheFirst => "all-but-one",
             Self::Refuses => "refuses",
         }
@@ -38,7 +40,7 @@ impl Strategy for Obedience {
     }
 
     fn threads_start(&self) -> ThreadsStart {
-        ThreadsStart::Never
+        if matches!(self, Self::Alone) { ThreadsStart::Never } else { ThreadsStart::Render }
     }
 
     fn rule(&self) -> Rule {
@@ -83,6 +85,15 @@ fn each_strategy_has_a_row_and_its_pieces() {
         assert_eq!(row.timeline.lanes.len(), 1);
         assert_eq!(row.lost_ns, 2.0 * row.wall_ns - explanation.reference_ns);
     }
+}
+
+/// Catches a second thread that waits where there is none.
+#[test]
+fn a_strategy_without_threads_has_one_whatever_it_is_given() {
+    let explanation = explain(&[&Obedience::Alone]).expect("explained");
+    let row = &explanation.rows[0];
+    assert_eq!((row.strategy, row.threads), ("alone", 1));
+    assert_eq!(row.lost_ns, row.wall_ns - explanation.reference_ns);
 }
 
 /// Catches figures of a strategy that draws something else, or nothing.

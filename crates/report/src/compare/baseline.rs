@@ -179,6 +179,14 @@ pub(super) fn text(baseline: &Baseline, report: &Report<'_>) -> String {
             .to_owned(),
         "Chance alone changes one row in twenty.".to_owned(),
     ];
+    if report.noise.is_disturbing()
+        || report.comparison.control().is_some_and(|control| !control.contains(1.0))
+    {
+        lines.push(
+            "This run was disturbed, or its control has no 1 in it: believe no verdict, measure again."
+                .to_owned(),
+        );
+    }
     if baseline.digest != report.comparison.digest.to_string() {
         lines.push("The baseline drew ANOTHER PICTURE: that may be all of the difference.".to_owned());
     }

@@ -111,6 +111,12 @@ fn why(report: &Report<'_>, load: &Load) -> String {
     let as_good = others.filter(|row| speedup(row).is_some_and(|other| other.high >= won.low)).count() - 1;
     let mut parts = vec![if winner.role == Role::Reference {
         format!("{}: no strategy pays, {} is first", name(report), winner.strategy)
+    } else if won.low <= 1.0 {
+        format!(
+            "{}: no strategy is faster than alone for certain, {} comes first",
+            name(report),
+            winner.strategy
+        )
     } else {
         let (strategy, dealing) = (winner.strategy, dealing(winner.rule.dealing));
         format!("{}: {strategy} ({dealing}) is first, with {as_good} more within the intervals", name(report))
@@ -210,6 +216,24 @@ mod tests {
              75 % of the cost, so whole tiles allow at most 1.33; all pixels take 5.00 ms, so starting threads and \
              dealing out count."
         );
+    }
+
+    /// Catches a winner that may be slower than a single thread.
+    #[test]
+    fn a_lead_within_the_interval_is_none() {
+        let mut comparison = comparison();
+        comparison.rows[2].figures.as_mut().expect("figures").speedup =
+            Interval { median: 1.2, low: 0.9, high: 1.6 };
+        let (subject, machine, noise) = (subject(), machine(), noise());
+        let report = Report {
+            subject: &subject,
+            comparison: &comparison,
+            machine: &machine,
+            noise: &noise,
+            baseline: None,
+        };
+        let told = why(&report, &load(&[1, 1]));
+        assert!(told.contains(": no strategy is faster than alone for certain, pool comes first;"), "{told}");
     }
 
     #[test]

@@ -22,7 +22,7 @@ const HEADER: [&str; 10] = [
 /// The columns of numbers, which line up at their right.
 const NUMBERS: std::ops::RangeInclusive<usize> = 1..=7;
 
-/// The half of the control's interval, as a share of it, above which the table tells little.
+/// How far from 1 the control's interval reaches where the table tells little.
 const TELLING: f64 = 0.05;
 
 /// What a cell without a figure holds.
@@ -199,11 +199,11 @@ fn legend(comparison: &Comparison) -> [String; 4] {
 /// What the control says of the table.
 fn control(comparison: &Comparison) -> Option<String> {
     let (reference, control) = (reference(comparison), comparison.control()?);
-    let half_width = control.relative_half_width();
-    let (wide, percent) = (half_width > TELLING, half_width * 100.0);
+    let far = (control.high - 1.0).max(1.0 - control.low);
+    let (wide, percent) = (far > TELLING, far * 100.0);
     let verdict = match (control.contains(1.0), wide) {
         (true, false) => "as it should be, 1 is in it.".to_owned(),
-        (true, true) => format!("1 is in it, but it is as wide as +-{percent:.0} %."),
+        (true, true) => format!("1 is in it, but it reaches {percent:.0} % from there."),
         (false, _) => "1 is not in it: measure again.\n\
                        Chance alone keeps it out of at most one quiet run in twenty."
             .to_owned(),
@@ -253,26 +253,26 @@ mod tests {
             control(&comparison).expect("a control")
         };
         assert_eq!(
-            told(1.0, 0.951, 1.05),
-            "control: sequential over itself is 1.000 [0.951, 1.050]; as it should be, 1 is in it.\n\
+            told(1.0, 0.951, 1.049),
+            "control: sequential over itself is 1.000 [0.951, 1.049]; as it should be, 1 is in it.\n\
              That much is order and drift, of one thread; to tell rows apart compare their own intervals."
         );
         assert_eq!(
-            told(0.95, 0.92, 0.98),
-            "control: sequential over itself is 0.950 [0.920, 0.980]; 1 is not in it: measure again.\n\
+            told(0.97, 0.952, 0.98),
+            "control: sequential over itself is 0.970 [0.952, 0.980]; 1 is not in it: measure again.\n\
              Chance alone keeps it out of at most one quiet run in twenty."
         );
         assert_eq!(
             told(1.0, 0.939, 1.11),
-            "control: sequential over itself is 1.000 [0.939, 1.110]; 1 is in it, but it is as wide as +-9 %.\n\
-             Believe no difference between rows below 9 %: measure longer (--time-limit, --precision-goal), or on a \
+            "control: sequential over itself is 1.000 [0.939, 1.110]; 1 is in it, but it reaches 11 % from there.\n\
+             Believe no difference between rows below 11 %: measure longer (--time-limit, --precision-goal), or on a \
              quieter machine."
         );
         assert_eq!(
             told(0.8, 0.7, 0.91),
             "control: sequential over itself is 0.800 [0.700, 0.910]; 1 is not in it: measure again.\n\
              Chance alone keeps it out of at most one quiet run in twenty.\n\
-             Believe no difference between rows below 13 %: measure longer (--time-limit, --precision-goal), or on a \
+             Believe no difference between rows below 30 %: measure longer (--time-limit, --precision-goal), or on a \
              quieter machine."
         );
     }
