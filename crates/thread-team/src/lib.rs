@@ -11,7 +11,7 @@ use std::num::NonZeroUsize;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
-use std::thread::{self, Scope};
+use std::thread;
 
 /// The team's word that a member failed: leave the work as it is and return.
 #[derive(Debug)]
@@ -41,17 +41,13 @@ pub fn run<Share: Send>(
     body: impl Fn(&Team, Share) -> Result<(), Stop> + Sync,
 ) -> Result<(), StrategyError> {
     let threads = shares.len();
-    let team = Team::new(strategy);
-    thread::scope(|scope| {
-        for (index, share) in shares.enumerate() {
-            if index + 1 == threads {
-                drop(body(&team, share));
-            } else if team.spawn(scope, index, threads, || body(&team, share)).is_err() {
-                break;
-            }
+    let mut others: Vec<Share> = shares.collect();
+    let own = others.pop();
+    fork(strategy, threads, others, &body, |team| {
+        if let Some(own) = own {
+            drop(body(team, own));
         }
-    });
-    team.outcome()
+    })
 }
 
 /// As [`run`], but the caller's thread has no share and does `meanwhile`: it begins when all threads are started, or
@@ -66,15 +62,29 @@ pub fn run_beside<Share: Send>(
     body: impl Fn(&Team, Share) -> Result<(), Stop> + Sync,
     meanwhile: impl FnOnce(),
 ) -> Result<(), StrategyError> {
-    let threads = shares.len();
+    fork(strategy, shares.len(), shares, &body, |_| meanwhile())
+}
+
+/// Starts a thread for each of `shares`, of a team of `threads`, and does `meanwhile` on the caller's.
+fn fork<Share: Send>(
+    strategy: &'static str,
+    threads: usize,
+    shares: impl IntoIterator<Item = Share>,
+    body: &(impl Fn(&Team, Share) -> Result<(), Stop> + Sync),
+    meanwhile: impl FnOnce(&Team),
+) -> Result<(), StrategyError> {
     let team = Team::new(strategy);
+    let team_ref = &team;
     thread::scope(|scope| {
-        for (index, share) in shares.enumerate() {
-            if team.spawn(scope, index, threads, || body(&team, share)).is_err() {
+        for (index, share) in shares.into_iter().enumerate() {
+            let thread = thread::Builder::new().name(format!("{strategy} {index}"));
+            // A member that returns `Stop` has nothing to add: the failure is with the team.
+            if let Err(source) = thread.spawn_scoped(scope, move || drop(body(team_ref, share))) {
+                team_ref.fail(StrategyError::Spawn { strategy, threads, source });
                 break;
             }
         }
-        meanwhile();
+        meanwhile(team_ref);
     });
     team.outcome()
 }
@@ -129,22 +139,6 @@ impl Team {
     pub fn outcome(self) -> Result<(), StrategyError> {
         let first_error = self.first_error.into_inner().unwrap_or_else(PoisonError::into_inner);
         first_error.map_or(Ok(()), Err)
-    }
-
-    /// Starts the member `index` of `threads`.
-    fn spawn<'scope, 'env: 'scope>(
-        &'env self,
-        scope: &'scope Scope<'scope, 'env>,
-        index: usize,
-        threads: usize,
-        body: impl FnOnce() -> Result<(), Stop> + Send + 'scope,
-    ) -> Result<(), Stop> {
-        let thread = thread::Builder::new().name(format!("{} {index}", self.strategy));
-        // A member that returns `Stop` has nothing to add: the failure is with the team.
-        match thread.spawn_scoped(scope, || drop(body())) {
-            Ok(_) => Ok(()),
-            Err(source) => Err(self.fail(StrategyError::Spawn { strategy: self.strategy, threads, source })),
-        }
     }
 
     fn fail(&self, error: StrategyError) -> Stop {
