@@ -11,6 +11,7 @@ use crate::efficiency::{Account, Losses};
 use crate::poison;
 use crate::schedule::Protocol;
 use crate::statistics::{Interval, ratio_interval};
+use crate::stopwatch::nanoseconds;
 use crate::timeline::{Cost, TimeRecorder, Timeline};
 use rayweave_core::image::ImageError;
 use rayweave_core::{Digest, Image, Plan, Strategy, Work};
@@ -244,7 +245,7 @@ impl<'a> Series<'a> {
         if !counts {
             return Ok(());
         }
-        self.wall_ns.push(u64::try_from((end - begin).as_nanos()).unwrap_or(u64::MAX));
+        self.wall_ns.push(nanoseconds(end - begin));
         let is_quicker = |timeline: &Timeline| {
             self.quickest.as_ref().is_none_or(|quickest| timeline.wall_ns < quickest.wall_ns)
         };

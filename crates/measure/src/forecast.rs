@@ -124,7 +124,7 @@ impl Question<'_> {
     /// No picture of this size, or a strategy that fails though it could be prepared.
     pub fn answer(&self, mut progress: impl FnMut(Stage, f64)) -> Result<Forecast, ForecastError> {
         let mut unavailable = Vec::new();
-        let mut strategies = vec![self.reference];
+        let mut strategies = Vec::new();
         for &strategy in self.strategies.iter().filter(|s| s.threads_start() != ThreadsStart::Never) {
             match of_pixels(strategy, NonZeroUsize::MIN) {
                 Ok(_) => strategies.push(strategy),
@@ -142,7 +142,7 @@ impl Question<'_> {
         let kinds: Vec<Piece> = strategies.iter().map(|strategy| strategy.rule().piece).collect();
         let pieces: Vec<OneByOne> = Cut::for_pieces(&kinds).into_iter().map(OneByOne::new).collect();
 
-        let timed = strategies[1..]
+        let timed = strategies
             .iter()
             .flat_map(|&strategy| here.iter().map(move |&threads| Entry { strategy, threads }));
         let beside = several.iter().map(|&threads| Entry { strategy: &independent, threads });
@@ -167,29 +167,34 @@ impl Question<'_> {
         let speedup = |pieces: &OneByOne| Some(find(&comparison, pieces.name(), 1)?.figures?.speedup.median);
         let measured: Vec<_> = pieces.iter().filter_map(|pieces| Some((pieces, speedup(pieces)?))).collect();
         let costs = PieceCosts::new(&measured, reference);
-        let time = |index: usize, threads: usize| {
-            let rule = strategies[index].rule();
-            let slowdown = slowdown(&slowdowns, threads);
-            let pieces = costs.of(rule.piece, threads).into_iter().map(|cost| cost * slowdown);
-            simulate(rule, threads, &pieces.collect::<Vec<_>>(), &overheads[index]).time
-        };
-        let curve = |index: usize| {
+        let curve = |(strategy, overheads): (&&dyn Strategy, &Overheads)| {
+            let rule = strategy.rule();
+            let time = |threads: usize| {
+                let slowdown = slowdown(&slowdowns, threads);
+                let pieces = costs.of(rule.piece, threads).into_iter().map(|cost| cost * slowdown);
+                simulate(rule, threads, &pieces.collect::<Vec<_>>(), overheads).time
+            };
             let times: Vec<(usize, f64)> =
-                self.threads.iter().map(|threads| (threads.get(), time(index, threads.get()))).collect();
-            let one = time(index, 1);
+                self.threads.iter().map(|threads| (threads.get(), time(threads.get()))).collect();
+            let one = time(1);
             let own: Vec<(usize, f64)> = times.iter().map(|&(threads, time)| (threads, one / time)).collect();
-            let name = strategies[index].name();
             let points = times.iter().map(|&(threads, time)| {
-                let row = find(&comparison, name, threads);
+                let row = find(&comparison, strategy.name(), threads);
                 let measured = row.and_then(|row| row.figures).map(|figures| figures.speedup);
                 Point { threads, predicted: reference / time, measured }
             });
-            let (amdahl, usl) = (amdahl(&own), usl(&own));
-            Curve { strategy: name, overheads: overheads[index], points: points.collect(), amdahl, usl }
+            Curve {
+                strategy: strategy.name(),
+                overheads: *overheads,
+                points: points.collect(),
+                amdahl: amdahl(&own),
+                usl: usl(&own),
+            }
         };
         // Whose pieces could not be timed has no curve, and the row of these pieces says why.
-        let curves = (1..strategies.len()).filter(|&index| costs.know(strategies[index].rule().piece));
-        let curves = curves.map(curve).collect();
+        let known =
+            strategies.iter().zip(&overheads).filter(|(strategy, _)| costs.know(strategy.rule().piece));
+        let curves = known.map(curve).collect();
         Ok(Forecast { curves, unavailable, slowdowns, comparison })
     }
 }

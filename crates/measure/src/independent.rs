@@ -1,6 +1,7 @@
 //! What cores cost each other: threads that share nothing, each of which draws the whole picture.
 
 use crate::statistics::{Interval, ratio_interval};
+use crate::stopwatch::nanoseconds;
 use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule, panic_message, render_tile};
 use rayweave_core::{Image, Plan, Renderer, Strategy, StrategyError, ThreadsStart, Work};
 use std::collections::BTreeMap;
@@ -105,9 +106,9 @@ impl Renderer for Copying {
     }
 }
 
-/// A `u64` of nanoseconds lasts for 584 years.
+/// 0 of no times.
 fn mean_ns(times: &[Duration]) -> u64 {
-    u64::try_from(times.iter().sum::<Duration>().as_nanos() / times.len().max(1) as u128).unwrap_or(u64::MAX)
+    nanoseconds(times.iter().sum()) / times.len().max(1) as u64
 }
 
 #[cfg(test)]

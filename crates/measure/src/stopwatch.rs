@@ -113,7 +113,7 @@ impl Executor for Stopwatch<'_> {
 }
 
 /// A `u64` of nanoseconds lasts for 584 years.
-fn nanoseconds(duration: Duration) -> u64 {
+pub(crate) fn nanoseconds(duration: Duration) -> u64 {
     u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX)
 }
 
