@@ -109,18 +109,16 @@ fn why(report: &Report<'_>, load: &Load) -> String {
     let threads = report.comparison.rows.iter().map(|row| row.threads).max().unwrap_or(1);
     let others = report.comparison.rows.iter().filter(|row| row.role != Role::Control);
     let as_good = others.filter(|row| speedup(row).is_some_and(|other| other.high >= won.low)).count() - 1;
-    let mut parts = vec![if winner.role == Role::Reference {
-        format!("{}: no strategy pays, {} is first", name(report), winner.strategy)
+    let strategy = winner.strategy;
+    let verdict = if winner.role == Role::Reference {
+        format!("no strategy pays, {strategy} is first")
     } else if won.low <= 1.0 {
-        format!(
-            "{}: no strategy is faster than alone for certain, {} comes first",
-            name(report),
-            winner.strategy
-        )
+        format!("no strategy is faster than alone for certain, {strategy} comes first")
     } else {
-        let (strategy, dealing) = (winner.strategy, dealing(winner.rule.dealing));
-        format!("{}: {strategy} ({dealing}) is first, with {as_good} more within the intervals", name(report))
-    }];
+        let dealing = dealing(winner.rule.dealing);
+        format!("{strategy} ({dealing}) is first, with {as_good} more within the intervals")
+    };
+    let mut parts = vec![format!("{}: {verdict}", name(report))];
     let uneven = load.unevenness(threads);
     parts.push(if uneven < EVEN {
         format!("the cost is even, equal shares of tiles differ by {:.0} %", (uneven - 1.0) * 100.0)
