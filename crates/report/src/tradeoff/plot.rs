@@ -95,12 +95,14 @@ fn draw_panel(
             )?
             .label(format!("importance, bounces: {depth}"))
             .legend(move |(x, y)| TriangleMarker::new((x + 8, y), MARKER + 2, color.filled()));
-        chart
-            .draw_series(
-                series(Sampling::Lattice, true).map(|at| Cross::new(at, MARKER, color.stroke_width(2))),
-            )?
-            .label(format!("adaptive lattice, bounces: {depth}"))
-            .legend(move |(x, y)| Cross::new((x + 8, y), MARKER, color.stroke_width(2)));
+        // With all bounces only.
+        let mut adaptive = series(Sampling::Lattice, true).peekable();
+        if adaptive.peek().is_some() {
+            chart
+                .draw_series(adaptive.map(|at| Cross::new(at, MARKER, color.stroke_width(2))))?
+                .label(format!("adaptive lattice, bounces: {depth}"))
+                .legend(move |(x, y)| Cross::new((x + 8, y), MARKER, color.stroke_width(2)));
+        }
         let of_depth = rows().filter(|row| row.setting.max_reflections == depth);
         chart.draw_series(of_depth.map(|row| label(row, &color)))?;
     }
