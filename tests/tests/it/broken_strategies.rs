@@ -1,33 +1,13 @@
-//! Deliberately broken strategies, each of which `check` has to catch with the right pixel named;
-//! and the real ones, which have to pass it, and to survive work that panics.
+//! Deliberately broken strategies, each of which `check` has to catch with the right pixel named.
 
+use crate::gradient::{Gradient, PATIENCE, Panics, threads, tile};
 use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule, render_tile};
 use rayweave_core::{Area, Image, Plan, Renderer, Rgb, Strategy, StrategyError, ThreadsStart, Tile, Work};
 use rayweave_measure::{Case, Check, Fault, Finding};
-use rayweave_registry::{available, reference};
-use std::num::{NonZeroU32, NonZeroUsize};
+use rayweave_registry::reference;
 use std::panic::resume_unwind;
-use std::sync::mpsc;
 use std::thread;
 use std::time::Duration;
-
-/// A picture in which no two pixels are alike.
-struct Gradient;
-
-impl Gradient {
-    fn color(x: u32, y: u32) -> Rgb {
-        [x as f32 + 0.25, y as f32 - 0.5, (x * 31 + y) as f32 / 7.0]
-    }
-}
-
-impl Work for Gradient {
-    fn render(&self, tile: &mut Tile<'_>) {
-        let left = tile.area().x;
-        for (y, row) in tile.rows() {
-            (left..).zip(row).for_each(|(x, color)| *color = Self::color(x, y));
-        }
-    }
-}
 
 const NAME: &str = "broken";
 
@@ -84,10 +64,7 @@ fn right(plan: Plan, work: &dyn Work, image: &mut Image) -> Result<(), StrategyE
     share_out(plan.threads.get(), work, image.tiles(plan.tile))
 }
 
-/// For a busy machine: nobody waits so long who has the threads.
-const PATIENCE: Duration = Duration::from_secs(60);
-
-/// For strategies that do not have them, and would make everybody wait.
+/// For strategies that do not have the threads, and would make everybody wait.
 const IMPATIENCE: Duration = Duration::from_millis(200);
 
 /// What a check of two threads and tiles of 8 says about a picture of this size.
@@ -107,14 +84,6 @@ fn findings_at(strategy: &dyn Strategy, width: u32, height: u32, timeout: Durati
 /// The same of 20 x 12 pixels, which are three by two tiles, the last column and row smaller.
 fn findings(broken: fn(Plan, &dyn Work, &mut Image) -> Result<(), StrategyError>) -> Vec<Finding> {
     findings_at(&Broken(broken), 20, 12, PATIENCE)
-}
-
-fn threads(count: usize) -> NonZeroUsize {
-    NonZeroUsize::new(count).expect("not 0")
-}
-
-fn tile(side: u32) -> NonZeroU32 {
-    NonZeroU32::new(side).expect("not 0")
 }
 
 /// The tile that a pixel was computed in, and the name of the thread.
@@ -442,104 +411,4 @@ fn does_not_compute_the_second_time() {
 
 fn faults(findings: &[Finding]) -> Vec<&Fault> {
     findings.iter().map(|finding| &finding.fault).collect()
-}
-
-const THREADS: [usize; 6] = [1, 2, 3, 5, 8, 64];
-
-#[test]
-fn the_real_strategies_agree() {
-    let sizes = [(1, 1), (1, 500), (500, 1), (7, 3), (97, 61)];
-    let case =
-        |(width, height)| Case { name: "gradient".to_owned(), width, height, work: Box::new(Gradient) };
-    let check = Check {
-        reference: reference(),
-        strategies: &available(),
-        cases: &sizes.map(case),
-        threads: &THREADS.map(threads),
-        tiles: &[1, 8, 32, 1000].map(tile),
-        timeout: PATIENCE,
-    };
-    let mut told = 0;
-    let verdict = check
-        .run(|progress| {
-            assert_eq!(progress.done, told);
-            told += 1;
-            assert!(told <= progress.total);
-        })
-        .expect("a reference picture");
-    assert_eq!(verdict.findings, []);
-    let alone = available().iter().filter(|s| s.threads_start() == ThreadsStart::Never).count();
-    let settings = ((available().len() - alone) * THREADS.len() + alone) * 4;
-    assert_eq!(verdict.compared, settings * sizes.len() * 2);
-    assert_eq!(verdict.compared, told);
-}
-
-/// Work with a fault at one pixel.
-struct Panics<W> {
-    work: W,
-    x: u32,
-    y: u32,
-}
-
-impl<W: Work> Work for Panics<W> {
-    fn render(&self, tile: &mut Tile<'_>) {
-        if tile.area().contains(self.x, self.y) {
-            // A panic, without the message on standard error that `panic!` writes.
-            resume_unwind(Box::new("injected"));
-        }
-        self.work.render(tile);
-    }
-}
-
-#[test]
-fn the_real_strategies_survive_work_that_panics() {
-    let (done, finished) = mpsc::channel();
-    let survive = move || {
-        for strategy in available() {
-            for count in THREADS {
-                survives(strategy, threads(count));
-            }
-        }
-        let _ = done.send(());
-    };
-    let watched = thread::spawn(survive);
-    let result = finished.recv_timeout(Duration::from_secs(120));
-    assert_ne!(result, Err(mpsc::RecvTimeoutError::Timeout), "a strategy hangs");
-    watched.join().expect("every strategy survives");
-}
-
-fn survives(strategy: &dyn Strategy, threads: NonZeroUsize) {
-    let context = format!("{}, {threads} threads", strategy.name());
-    let mut renderer = strategy.prepare(Plan { threads, tile: tile(8) }).expect(&context);
-    let mut image = Image::new(97, 61).expect("a picture");
-    for (x, y) in [(0, 0), (50, 30), (96, 60)] {
-        let error = renderer.render(&Panics { work: Gradient, x, y }, &mut image).expect_err(&context);
-        let StrategyError::Panicked { strategy: name, tile, message } = error else {
-            panic!("{context}: {error}");
-        };
-        assert_eq!((name, message.as_str()), (strategy.name(), "injected"), "{context}");
-        assert!(tile.contains(x, y), "{context}: ({x}, {y}) is not in {tile}");
-
-        image.fill([0.0; 3]);
-        renderer.render(&Gradient, &mut image).expect(&context);
-        let right = (0..61).flat_map(|y| (0..97).map(move |x| Gradient::color(x, y)));
-        assert!(image.pixels().iter().copied().eq(right), "{context}: a wrong picture after the panic");
-    }
-}
-
-#[test]
-fn all_at_once_panics_end_too() {
-    struct AlwaysPanics;
-    impl Work for AlwaysPanics {
-        fn render(&self, _: &mut Tile<'_>) {
-            resume_unwind(Box::new(String::from("always")));
-        }
-    }
-    let mut image = Image::new(97, 61).expect("a picture");
-    for strategy in available() {
-        let plan = Plan { threads: threads(8), tile: tile(8) };
-        let mut renderer = strategy.prepare(plan).expect("a renderer");
-        let error = renderer.render(&AlwaysPanics, &mut image).expect_err("a panic").to_string();
-        assert!(error.starts_with(strategy.name()) && error.ends_with(": always"), "{error}");
-    }
 }

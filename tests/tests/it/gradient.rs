@@ -1,0 +1,52 @@
+//! A work that strategies are tried with, and how.
+
+use rayweave_core::{Rgb, Tile, Work};
+use std::num::{NonZeroU32, NonZeroUsize};
+use std::panic::resume_unwind;
+use std::time::Duration;
+
+/// A picture in which no two pixels are alike.
+pub(crate) struct Gradient;
+
+impl Gradient {
+    pub(crate) fn color(x: u32, y: u32) -> Rgb {
+        [x as f32 + 0.25, y as f32 - 0.5, (x * 31 + y) as f32 / 7.0]
+    }
+}
+
+impl Work for Gradient {
+    fn render(&self, tile: &mut Tile<'_>) {
+        let left = tile.area().x;
+        for (y, row) in tile.rows() {
+            (left..).zip(row).for_each(|(x, color)| *color = Self::color(x, y));
+        }
+    }
+}
+
+/// Work with a fault at one pixel.
+pub(crate) struct Panics<W> {
+    pub(crate) work: W,
+    pub(crate) x: u32,
+    pub(crate) y: u32,
+}
+
+impl<W: Work> Work for Panics<W> {
+    fn render(&self, tile: &mut Tile<'_>) {
+        if tile.area().contains(self.x, self.y) {
+            // A panic, without the message on standard error that `panic!` writes.
+            resume_unwind(Box::new("injected"));
+        }
+        self.work.render(tile);
+    }
+}
+
+/// For a busy machine: nobody waits so long who has the threads.
+pub(crate) const PATIENCE: Duration = Duration::from_secs(60);
+
+pub(crate) fn threads(count: usize) -> NonZeroUsize {
+    NonZeroUsize::new(count).expect("not 0")
+}
+
+pub(crate) fn tile(side: u32) -> NonZeroU32 {
+    NonZeroU32::new(side).expect("not 0")
+}
