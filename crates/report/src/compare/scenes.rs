@@ -45,6 +45,10 @@ impl ScenesReport<'_> {
         if !disturbed.is_empty() {
             lines.push(format!("DISTURBED by other programs: {}.", disturbed.join(", ")));
         }
+        let interrupted = self.reports.iter().filter(|report| report.comparison.interrupted);
+        lines.extend(interrupted.map(|report| {
+            format!("INTERRUPTED: {} after {} rounds.", name(report), report.comparison.rounds)
+        }));
         lines.extend(self.reports.first().map(|report| machine::text(report.machine)));
         lines.join("\n")
     }
