@@ -12,6 +12,7 @@ mod options;
 mod output;
 mod picture;
 mod progress;
+mod watched;
 
 use clap::{Parser, Subcommand};
 use commands::{check, compare, error, explain, intersect, overhead, predict, render, sample, strategies};

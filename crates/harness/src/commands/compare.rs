@@ -8,13 +8,13 @@ use crate::options::{
     parse_seconds, parse_threads, strategy_parser,
 };
 use crate::output::{PendingFile, distinct_files};
-use crate::progress::Share;
+use crate::watched::watched;
 use crate::{Outcome, complain, print};
 use clap::Args;
 use rayweave_core::{Arithmetic, Execution, Strategy};
 use rayweave_measure::compare::{CompareError, Comparison, Entry, Executor};
 use rayweave_measure::machine::Machine;
-use rayweave_measure::noise::{Noise, Watch};
+use rayweave_measure::noise::Noise;
 use rayweave_measure::{Load, Protocol};
 use rayweave_report::compare::{Baseline, BothReport, Report, ScenesReport, Subject};
 use std::fs;
@@ -291,16 +291,14 @@ fn measure(
     let mut executors: Vec<&mut dyn Executor> =
         children.iter_mut().map(|children| children as &mut dyn Executor).collect();
 
-    let bar = Share::new();
-    let watch = Watch::start();
     let reference = rayweave_registry::reference();
     let protocol = protocol(options, ways.len(), scenes);
-    let comparisons = protocol.run_together(reference, &entries(options), &mut executors, |progress| {
-        // Drawn here and nowhere else: between the timed spans.
-        bar.show(progress.fraction, format!("{}, threads: {}", progress.strategy, progress.threads));
+    let (comparisons, _, noise) = watched(|bar| {
+        protocol.run_together(reference, &entries(options), &mut executors, |progress| {
+            // Drawn here and nowhere else: between the timed spans.
+            bar.show(progress.fraction, format!("{}, threads: {}", progress.strategy, progress.threads));
+        })
     });
-    let noise = watch.finish(Machine::here().logical_cores);
-    drop(bar);
     let comparisons = comparisons.map_err(|error| match error {
         CompareError::Interrupted(_) => Unmeasured::Interrupted(error.to_string()),
         CompareError::Reference(_) => Unmeasured::Failed(error.to_string()),
