@@ -2,6 +2,7 @@
 //!
 //! So no pool that still waits, no spinning team and no warmed allocator of one strategy meets another.
 
+use crate::interrupt::Interrupt;
 use crate::options::{SceneOptions, SharingOption};
 use rayweave_core::Digest;
 use rayweave_measure::compare::{Entry, Executor, Rays, Rendering, Sample};
@@ -81,6 +82,7 @@ pub struct Children {
     begin: Instant,
     /// Of those that answered.
     slowest: Option<Duration>,
+    interrupt: Interrupt,
 }
 
 impl Children {
@@ -90,6 +92,7 @@ impl Children {
         options: &SceneOptions,
         share_samples: bool,
         tile: NonZeroU32,
+        interrupt: &Interrupt,
     ) -> Result<Self, String> {
         let program = env::current_exe().map_err(|e| format!("cannot find this program's own file: {e}"))?;
         let share_samples = if share_samples { SharingOption::On } else { SharingOption::Off };
@@ -98,7 +101,7 @@ impl Children {
         arguments.extend(words.into_iter().map(OsString::from));
         // Last, and where even a name that begins with `-` is a path.
         arguments.extend(path.into_iter().flat_map(|path| [OsString::from("--"), path.into()]));
-        Ok(Self { program, arguments, begin: Instant::now(), slowest: None })
+        Ok(Self { program, arguments, begin: Instant::now(), slowest: None, interrupt: interrupt.clone() })
     }
 
     fn ask(&mut self, entry: &Entry<'_>, count_rays: bool) -> Result<(Rendering, Option<Rays>), String> {
@@ -132,6 +135,11 @@ impl Executor for Children {
 
     fn elapsed(&self) -> Duration {
         self.begin.elapsed()
+    }
+
+    /// A terminal interrupts the process that renders too, so that none is waited for.
+    fn is_interrupted(&self) -> bool {
+        self.interrupt.happened()
     }
 }
 

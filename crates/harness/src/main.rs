@@ -2,15 +2,17 @@
 //!
 //! The glue between the other crates, and the only place that prints: results to standard output,
 //! errors and progress to standard error. Exit status: 0 done and all checks held; 1 a check
-//! failed; 2 the request or its input was wrong, or the machine cannot meet it.
+//! failed; 2 the request or its input was wrong, or the machine cannot meet it; 130 interrupted.
 
 mod child;
 mod commands;
 mod input;
+mod interrupt;
 mod options;
 mod output;
 mod picture;
 mod progress;
+mod watched;
 
 use clap::{Parser, Subcommand};
 use commands::{check, compare, error, explain, intersect, overhead, predict, render, sample, strategies};
@@ -58,6 +60,8 @@ enum Command {
 enum Outcome {
     Held,
     Failed,
+    /// Before all was done.
+    Interrupted,
 }
 
 fn main() -> ExitCode {
@@ -78,12 +82,18 @@ fn main() -> ExitCode {
     match result {
         Ok(Outcome::Held) => ExitCode::SUCCESS,
         Ok(Outcome::Failed) => ExitCode::from(1),
+        Ok(Outcome::Interrupted) => ExitCode::from(130),
         Err(message) => {
-            // Nobody is left to tell if standard error is closed.
-            let _ = writeln!(io::stderr(), "error: {message}");
+            complain(&message);
             ExitCode::from(2)
         }
     }
+}
+
+/// Says why there is no result.
+fn complain(message: &str) {
+    // Nobody is left to tell if standard error is closed.
+    let _ = writeln!(io::stderr(), "error: {message}");
 }
 
 /// Prints a result. A reader that has seen enough (`rayweave strategies | head -1`) is no failure.

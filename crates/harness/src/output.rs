@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use tempfile::{Builder, NamedTempFile};
 
 /// A file that will be there once it is whole. Until then an old one of this name stays, and nothing lies beside it:
-/// who is interrupted before the end leaves nothing behind.
+/// what ends before its end leaves nothing behind.
 pub struct PendingFile {
     path: PathBuf,
 }

@@ -96,6 +96,18 @@ fn check_holds_and_says_so() {
     assert_eq!(json["holds"], true);
     assert!(json["findings"].as_array().expect("a list").is_empty());
     assert!(json["compared"].as_u64().expect("a number") > 0);
+    let (awkward, full) = (&json["checked"][0], &json["checked"][1]);
+    assert_eq!(
+        awkward["pictures"][3],
+        serde_json::json!({"scene": "report (built in)", "width": 7, "height": 3})
+    );
+    let given = serde_json::json!([{"scene": "report (built in)", "width": 31, "height": 17}]);
+    assert_eq!((&full["pictures"], &full["tiles"]), (&given, &serde_json::json!([5])));
+    assert_eq!(
+        (&full["threads"], &awkward["threads"]),
+        (&serde_json::json!([1, 3]), &serde_json::json!([1, 3]))
+    );
+    assert!(full["strategies"].as_array().expect("a list").contains(&"tile-queue".into()), "{full}");
 }
 
 #[test]

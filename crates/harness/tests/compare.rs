@@ -300,3 +300,73 @@ fn scenes_stand_beside_each_other() {
         assert!(message.contains(expected), "{arguments}: {message}");
     }
 }
+
+/// A comparison without end, interrupted as a terminal does it: all processes of the group at once, when it has begun
+/// `samples` processes.
+#[cfg(target_os = "linux")]
+fn interrupted_at(samples: usize, options: &str) -> (program::Run, Option<Value>) {
+    use std::collections::BTreeSet;
+    use std::os::unix::process::CommandExt;
+    use std::process::{Command, Stdio};
+
+    let folder = folder();
+    let endless = "compare --strategy row-counter --time-limit 100000 --json a.json";
+    let mut program = Command::new(env!("CARGO_BIN_EXE_rayweave"))
+        .args(endless.split_whitespace().chain(options.split_whitespace()))
+        .current_dir(folder.path())
+        .process_group(0)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    let mut seen = BTreeSet::new();
+    while seen.len() < samples {
+        seen.extend(children_of(program.id()));
+        assert!(program.try_wait().expect("its state").is_none(), "it ended by itself");
+    }
+    let group = format!("-{}", program.id());
+    assert!(Command::new("kill").args(["-INT", "--", &group]).status().expect("kill").success());
+    let run = program::Run::of(program.wait_with_output().expect("its output"));
+    let file = folder.path().join("a.json");
+    (run, file.exists().then(|| json(&file)))
+}
+
+#[cfg(target_os = "linux")]
+fn children_of(parent: u32) -> Vec<u32> {
+    let processes = fs::read_dir("/proc").expect("/proc").filter_map(Result::ok);
+    let numbers = processes.filter_map(|entry| entry.file_name().to_str()?.parse().ok());
+    let is_child = |number: &u32| {
+        // "pid (name) state parent ...", gone in the meantime perhaps.
+        let stat = fs::read_to_string(format!("/proc/{number}/stat")).unwrap_or_default();
+        let rest = stat.rsplit(')').next().unwrap_or_default();
+        rest.split_whitespace().nth(1) == Some(&parent.to_string())
+    };
+    numbers.filter(is_child).collect()
+}
+
+/// Catches what was measured thrown away, and the sample that the same Ctrl-C ended told as a strategy's failure.
+#[cfg(target_os = "linux")]
+#[test]
+fn who_interrupts_it_gets_the_rounds_so_far() {
+    // The reference's picture, three rows that warm up, six rounds of three, and the next has begun.
+    let (run, object) = interrupted_at(1 + 3 + 6 * 3 + 1, "--size 4x4 --antialiasing 0");
+    assert_eq!((run.status, run.stderr.as_str()), (130, ""), "{}", run.stdout);
+    assert!(run.stdout.contains("; interrupted after ") && !run.stdout.contains("failed"), "{}", run.stdout);
+    let object = object.expect("what was asked for");
+    let rounds = object["rounds"].as_u64().expect("a number") as usize;
+    assert!(rounds >= 6 && object["interrupted"] == true, "{object}");
+    for result in object["results"].as_array().expect("a list") {
+        assert_eq!(result["samples_ns"].as_array().map(Vec::len), Some(rounds), "{result}");
+        assert!(result["median_ns"].is_u64() && result["error"].is_null(), "{result}");
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn who_interrupts_it_early_is_told_that_there_is_nothing() {
+    // The first sample would take minutes.
+    let (run, object) = interrupted_at(1, "--size 2000x2000 --antialiasing 32");
+    assert_eq!((run.status, run.stdout.as_str()), (130, ""), "{}", run.stderr);
+    let told = "error: interrupted after 0 complete rounds: there is no table of fewer than 6\n";
+    assert_eq!((run.stderr.as_str(), object), (told, None));
+}

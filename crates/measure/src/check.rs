@@ -69,10 +69,25 @@ pub struct Progress {
 /// What a check found.
 #[derive(Clone, Debug)]
 pub struct Verdict {
+    /// What was checked.
+    pub checked: Vec<Checked>,
     /// The number of pictures that were compared with the reference.
     pub compared: usize,
     /// Everything that is wrong, strategy by strategy; empty when all agree.
     pub findings: Vec<Finding>,
+}
+
+/// What a [`Check`] was: every strategy with every number of threads, size of tile and picture.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Checked {
+    /// Of the strategies.
+    pub strategies: Vec<&'static str>,
+    /// Name, width and height of each case.
+    pub pictures: Vec<(String, u32, u32)>,
+    /// Numbers of computing threads.
+    pub threads: Vec<usize>,
+    /// Sides of a tile, in pixels.
+    pub tiles: Vec<u32>,
 }
 
 /// Why nothing could be checked.
@@ -118,7 +133,7 @@ impl<'a> Check<'a> {
         let settings = |strategy: &&dyn Strategy| self.threads_of(*strategy).len() * self.tiles.len();
         let total = self.strategies.iter().map(settings).sum::<usize>() * pairs.len() * REPETITIONS;
 
-        let verdict = Verdict { compared: 0, findings: Vec::new() };
+        let verdict = Verdict { checked: vec![self.checked()], compared: 0, findings: Vec::new() };
         let mut run = Run { pairs: &pairs, verdict, done: 0, total, progress: &mut progress };
         for &strategy in self.strategies {
             for &threads in self.threads_of(strategy) {
@@ -129,6 +144,15 @@ impl<'a> Check<'a> {
             }
         }
         Ok(run.verdict)
+    }
+
+    fn checked(&self) -> Checked {
+        Checked {
+            strategies: self.strategies.iter().map(|strategy| strategy.name()).collect(),
+            pictures: self.cases.iter().map(|case| (case.name.clone(), case.width, case.height)).collect(),
+            threads: self.threads.iter().map(|threads| threads.get()).collect(),
+            tiles: self.tiles.iter().map(|tile| tile.get()).collect(),
+        }
     }
 
     /// The numbers of threads that make a difference to `strategy`.

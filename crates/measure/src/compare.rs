@@ -8,12 +8,15 @@
 //! * Preparing, poisoning the picture and verifying it lie outside of the timed span.
 //! * A row that fails, or gives another picture than the reference, is measured no further and gets
 //!   no figures; its samples so far stay. If it is the reference itself, no row gets figures.
+//! * A measurement that is [interrupted](Executor::is_interrupted) ends at once, and is of the complete rounds before.
 //! * Several works that give the same picture are measured [together](Protocol::run_together): their rows take
 //!   their turns in the same rounds, so times of one over times of another are ratios within a round too.
 //!
 //! The protocol has an [`Executor`] do the rendering and the timing, so its logic is tested without
 //! either; [`Stopwatch`](crate::stopwatch::Stopwatch) is the real one.
 
+#[cfg(test)]
+mod interrupt_tests;
 #[cfg(test)]
 mod noise_tests;
 mod row;
@@ -23,7 +26,7 @@ mod tests;
 pub use row::{Figures, OneShot, Role, Row};
 
 use crate::schedule::Protocol;
-use crate::statistics::{Interval, ratio_interval};
+use crate::statistics::{Interval, LEAST_VALUES, ratio_interval};
 use rayweave_core::{Digest, Strategy};
 use row::with_figures;
 use std::num::NonZeroUsize;
@@ -59,6 +62,11 @@ pub trait Executor {
 
     /// Time since the executor was made.
     fn elapsed(&self) -> Duration;
+
+    /// Whether somebody wants no more. A rendering during which that happened is no sample, however it ended.
+    fn is_interrupted(&self) -> bool {
+        false
+    }
 }
 
 /// One rendering, timed.
@@ -122,6 +130,8 @@ pub struct Comparison {
     pub seed: u64,
     /// The protocol's [goal](Protocol::goal).
     pub goal: Option<f64>,
+    /// Whether somebody [wanted no more](Executor::is_interrupted) before the protocol had enough.
+    pub interrupted: bool,
 }
 
 /// Why nothing could be compared.
@@ -130,6 +140,9 @@ pub enum CompareError {
     /// There is no picture to verify the others with.
     #[error("the reference failed: {0}")]
     Reference(String),
+    /// There are too few samples for an interval.
+    #[error("interrupted after {0} complete rounds: there is no table of fewer than {LEAST_VALUES}")]
+    Interrupted(usize),
 }
 
 impl Comparison {
@@ -178,7 +191,7 @@ impl Protocol {
     ///
     /// # Errors
     ///
-    /// There is no reference picture.
+    /// There is no reference picture, or it was interrupted too early.
     pub fn run(
         &self,
         reference: &dyn Strategy,
@@ -195,7 +208,7 @@ impl Protocol {
     ///
     /// # Errors
     ///
-    /// There is no reference picture.
+    /// There is no reference picture, or it was interrupted too early.
     pub fn run_together(
         &self,
         reference: &dyn Strategy,
@@ -210,11 +223,16 @@ impl Protocol {
         let roles = || [Role::Reference, Role::Control].into_iter().chain(std::iter::repeat(Role::Contender));
         let new_rows = || entries.iter().zip(roles()).map(|(entry, role)| Row::new(entry, role)).collect();
 
-        let digest = first.render(&base).map_err(CompareError::Reference)?.digest;
+        let rendering = first.render(&base);
+        if first.is_interrupted() {
+            return Err(CompareError::Interrupted(0));
+        }
+        let digest = rendering.map_err(CompareError::Reference)?.digest;
         let mut tables: Vec<Vec<Row>> = executors.iter().map(|_| new_rows()).collect();
         let mut schedule = self.schedule(tables.len() * entries.len());
         let mut running = vec![true; tables.len()];
         let mut next_look = self.min_rounds.max(1);
+        let mut interrupted_after = None;
         while let Some(turn) = schedule.next(executors[0].elapsed()) {
             // Without its reference a round says nothing.
             if turn.first {
@@ -241,14 +259,32 @@ impl Protocol {
                 rounds: turn.round.unwrap_or(0),
                 fraction: turn.fraction,
             });
+            let executor = &mut executors[table];
+            let result = match turn.round {
+                None => executor.warm_up(entry),
+                Some(_) => executor.render(entry).map(|rendering| (rendering, None)),
+            };
+            if executor.is_interrupted() {
+                interrupted_after = Some(turn.round.unwrap_or(0));
+                break;
+            }
             match turn.round {
-                None => row.warm_up(executors[table].warm_up(entry), digest),
-                Some(_) => row.measure(executors[table].render(entry), digest),
+                None => row.warm_up(result, digest),
+                Some(_) => row.measure(result.map(|(rendering, _)| rendering), digest),
             }
         }
 
-        let (rounds, seed, goal) = (schedule.rounds(), self.seed, self.goal);
-        let comparison = |rows| Comparison { rows: with_figures(rows), digest, rounds, seed, goal };
+        if let Some(complete) = interrupted_after {
+            if complete < LEAST_VALUES {
+                return Err(CompareError::Interrupted(complete));
+            }
+            // Of every row as many: what the broken round left behind has no counterpart.
+            tables.iter_mut().flatten().for_each(|row| row.samples.truncate(complete));
+        }
+        let rounds = interrupted_after.unwrap_or(schedule.rounds());
+        let (seed, goal, interrupted) = (self.seed, self.goal, interrupted_after.is_some());
+        let comparison =
+            |rows| Comparison { rows: with_figures(rows), digest, rounds, seed, goal, interrupted };
         Ok(tables.into_iter().map(comparison).collect())
     }
 

@@ -52,10 +52,13 @@ pub fn lower_quartile(sample: &[f64]) -> Option<f64> {
     sorted.get(sample.len().saturating_sub(1) / 4).copied()
 }
 
+/// Values that an interval needs at least.
+pub const LEAST_VALUES: usize = 6;
+
 /// The median of `sample` with its 95 % interval, an expanded percentile interval of the bootstrap: that of the
 /// plain percentiles is too narrow for few values. `None` when there is no sample.
 ///
-/// Of fewer than 6 values no interval covers 95 %; it is then the smallest and the largest value, or nearly.
+/// Of fewer than [`LEAST_VALUES`] no interval covers 95 %; it is then the smallest and the largest value, or nearly.
 ///
 /// It wants independent values, so ratios within a round, not times: what slows a whole round down cancels in the
 /// ratio.

@@ -2,6 +2,7 @@
 
 use crate::json;
 use crate::machine::Facts;
+use rayweave_measure::check::Checked;
 use rayweave_measure::{Fault, Finding, Machine, Verdict};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -35,12 +36,15 @@ pub fn text(verdict: &Verdict) -> String {
     lines.join("\n")
 }
 
-/// The whole verdict as a JSON object: `schema`, `compared`, `holds`, `machine` and `findings`, each
-/// of which has `strategy`, `threads`, `kind`, `message` and, where it is about a picture, `picture`.
+/// The whole verdict as a JSON object of schema 1: `schema`, `checked`, `compared`, `holds`, `machine` and `findings`. Keys
+/// may be added. Each of `checked` has `strategies`, `pictures` (`scene`, `width`, `height`), `threads` and `tiles`, of which
+/// each was checked with each; what starts no thread was checked as one. Each of `findings` has `strategy`, `threads`, `kind`,
+/// `message` and, where it is about a picture, `picture`.
 #[must_use]
 pub fn json(verdict: &Verdict, machine: &Machine) -> String {
     let object = Object {
         schema: SCHEMA,
+        checked: verdict.checked.iter().map(Part::new).collect(),
         compared: verdict.compared,
         holds: verdict.holds(),
         machine: Facts::new(machine),
@@ -52,10 +56,34 @@ pub fn json(verdict: &Verdict, machine: &Machine) -> String {
 #[derive(Serialize)]
 struct Object<'a> {
     schema: u32,
+    checked: Vec<Part<'a>>,
     compared: usize,
     holds: bool,
     machine: Facts<'a>,
     findings: Vec<Item<'a>>,
+}
+
+#[derive(Serialize)]
+struct Part<'a> {
+    strategies: &'a [&'static str],
+    pictures: Vec<Size<'a>>,
+    threads: &'a [usize],
+    tiles: &'a [u32],
+}
+
+#[derive(Serialize)]
+struct Size<'a> {
+    scene: &'a str,
+    width: u32,
+    height: u32,
+}
+
+impl<'a> Part<'a> {
+    fn new(Checked { strategies, pictures, threads, tiles }: &'a Checked) -> Self {
+        let size =
+            |(scene, width, height): &'a (String, u32, u32)| Size { scene, width: *width, height: *height };
+        Self { strategies, pictures: pictures.iter().map(size).collect(), threads, tiles }
+    }
 }
 
 #[derive(Serialize)]
@@ -113,7 +141,10 @@ mod tests {
             picture: Some(picture.clone()),
             fault: Fault::Threads { expected: 2, found },
         };
-        Verdict { compared: 96, findings: (10..10 + findings).map(found).collect() }
+        let pictures = vec![("room".to_owned(), 7, 3)];
+        let checked =
+            vec![Checked { strategies: vec!["one"], pictures, threads: vec![1, 2], tiles: vec![8] }];
+        Verdict { checked, compared: 96, findings: (10..10 + findings).map(found).collect() }
     }
 
     #[test]
@@ -138,6 +169,13 @@ mod tests {
             serde_json::from_str(&json(&verdict(7), &Machine::here())).expect("JSON");
         assert_eq!((&value["compared"], &value["holds"]), (&96.into(), &false.into()));
         assert_eq!(value["findings"].as_array().map(Vec::len), Some(7));
+        let expected = serde_json::json!([{
+            "strategies": ["one"],
+            "pictures": [{"scene": "room", "width": 7, "height": 3}],
+            "threads": [1, 2],
+            "tiles": [8],
+        }]);
+        assert_eq!((&value["schema"], &value["checked"]), (&1.into(), &expected));
         let finding = &value["findings"][6];
         assert_eq!((&finding["kind"], &finding["picture"]["scene"]), (&"threads".into(), &"room".into()));
         assert_eq!(finding["message"], "computing threads: expected 2, found 16");

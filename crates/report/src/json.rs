@@ -1,7 +1,7 @@
 //! What all JSON here has in common.
 
 use rayweave_measure::Interval;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Indented JSON of one of our own objects.
 pub(crate) fn text(object: &impl Serialize) -> String {
@@ -10,7 +10,7 @@ pub(crate) fn text(object: &impl Serialize) -> String {
 }
 
 /// A ratio with its interval.
-#[derive(Serialize)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 pub(crate) struct Ratio {
     median: f64,
     low: f64,
@@ -19,6 +19,12 @@ pub(crate) struct Ratio {
 
 impl From<Interval> for Ratio {
     fn from(Interval { median, low, high }: Interval) -> Self {
+        Self { median, low, high }
+    }
+}
+
+impl From<Ratio> for Interval {
+    fn from(Ratio { median, low, high }: Ratio) -> Self {
         Self { median, low, high }
     }
 }

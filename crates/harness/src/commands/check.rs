@@ -48,7 +48,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     arguments.tile.iter().try_for_each(|&tile| checked_tile(tile, input.width, input.height).map(drop))?;
     let strategies = chosen(&arguments.strategy);
 
-    let mut verdict = Verdict { compared: 0, findings: Vec::new() };
+    let mut verdict = Verdict { checked: Vec::new(), compared: 0, findings: Vec::new() };
     let mut check = |sizes: &[(u32, u32)], threads: &[usize], tiles: &[u32]| -> Result<(), String> {
         let cases = sizes.iter().map(|&size| case(&input, size)).collect::<Result<Vec<_>, _>>()?;
         let threads = or_default(&arguments.threads, threads.iter().copied().filter_map(NonZeroUsize::new));
@@ -61,6 +61,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
             tiles: &tiles,
             timeout: TIMEOUT,
         })?;
+        verdict.checked.extend(part.checked);
         verdict.compared += part.compared;
         verdict.findings.extend(part.findings);
         Ok(())

@@ -2,18 +2,19 @@
 
 use crate::child::Children;
 use crate::input::Input;
+use crate::interrupt::Interrupt;
 use crate::options::{
     SceneOptions, SharingOption, TileOption, all_threads, chosen, distinct, left_out_line, parse_percent,
     parse_seconds, parse_threads, strategy_parser,
 };
 use crate::output::{PendingFile, distinct_files};
-use crate::progress::Share;
-use crate::{Outcome, print};
+use crate::watched::watched;
+use crate::{Outcome, complain, print};
 use clap::Args;
 use rayweave_core::{Arithmetic, Execution, Strategy};
-use rayweave_measure::compare::{Comparison, Entry, Executor};
+use rayweave_measure::compare::{CompareError, Comparison, Entry, Executor};
 use rayweave_measure::machine::Machine;
-use rayweave_measure::noise::{Noise, Watch};
+use rayweave_measure::noise::Noise;
 use rayweave_measure::{Load, Protocol};
 use rayweave_report::compare::{Baseline, BothReport, Report, ScenesReport, Subject};
 use std::fs;
@@ -86,9 +87,14 @@ pub fn run(scene: Option<&Path>, options: &Options) -> Result<Outcome, String> {
         let subject = subject(input, ways(options)[0], tile);
         baseline.check(&subject).map_err(|reason| no_baseline(path, &reason))?;
     }
-    let measured = scenes.iter().zip(inputs);
-    let measured = measured.map(|(scene, input)| measure(scene.as_deref(), input, options, scenes.len()));
-    let measured = measured.collect::<Result<Vec<Measured>, _>>()?;
+    let measured = match measure_all(&scenes, inputs, options) {
+        Ok(measured) => measured,
+        Err(Unmeasured::Failed(reason)) => return Err(reason),
+        Err(Unmeasured::Interrupted(reason)) => {
+            complain(&reason);
+            return Ok(Outcome::Interrupted);
+        }
+    };
     let machine = Machine::here();
     let first = &measured[0];
     let skipped = first.input.skipped_line().map(|line| line + "\n").unwrap_or_default();
@@ -99,7 +105,8 @@ pub fn run(scene: Option<&Path>, options: &Options) -> Result<Outcome, String> {
             measured.iter().map(|measured| measured.report(0, &machine, None)).collect();
         let loads = measured.iter().map(|measured| measured.load(options)).collect::<Result<Vec<_>, _>>()?;
         let all = ScenesReport { reports: &reports, loads: &loads };
-        print(&format!("{}\n{left_out}", all.table()))?;
+        let missing = missing_line(&scenes[measured.len()..]);
+        print(&format!("{}\n{missing}{left_out}", all.table()))?;
         files.finish(&all.json(), &all.csv(), &all.markdown())?;
     } else if first.comparisons.len() == 2 {
         let both =
@@ -111,8 +118,14 @@ pub fn run(scene: Option<&Path>, options: &Options) -> Result<Outcome, String> {
         print(&format!("{}{below}", report.table()))?;
         files.finish(&report.json(), &report.csv(), &report.markdown())?;
     }
-    let hold = measured.iter().flat_map(|measured| &measured.comparisons).all(Comparison::holds);
-    Ok(if hold { Outcome::Held } else { Outcome::Failed })
+    let mut comparisons = measured.iter().flat_map(|measured| &measured.comparisons);
+    let interrupted = measured.len() < scenes.len() || comparisons.clone().any(|done| done.interrupted);
+    let hold = comparisons.all(Comparison::holds);
+    Ok(match (interrupted, hold) {
+        (true, _) => Outcome::Interrupted,
+        (false, true) => Outcome::Held,
+        (false, false) => Outcome::Failed,
+    })
 }
 
 /// The scenes to compare on; `None` is the report's.
@@ -175,6 +188,12 @@ fn no_baseline(path: &Path, reason: &str) -> String {
     format!("{}: cannot be a baseline: {reason}", path.display())
 }
 
+/// Which scenes an interruption left out.
+fn missing_line(scenes: &[Option<PathBuf>]) -> String {
+    let names: Vec<String> = scenes.iter().flatten().map(|path| path.display().to_string()).collect();
+    if names.is_empty() { String::new() } else { format!("not measured: {}\n", names.join(", ")) }
+}
+
 /// A scene, and a comparison for each way to compute its picture, measured in the same rounds.
 struct Measured {
     input: Input,
@@ -227,26 +246,63 @@ fn load(scene: Option<&Path>, options: &Options) -> Result<Input, String> {
     Ok(input)
 }
 
+/// Why there is no figure of a scene.
+enum Unmeasured {
+    Interrupted(String),
+    Failed(String),
+}
+
+impl From<String> for Unmeasured {
+    fn from(reason: String) -> Self {
+        Self::Failed(reason)
+    }
+}
+
+/// Measures on one scene after the other; only on the first of them if it is interrupted then.
+fn measure_all(
+    scenes: &[Option<PathBuf>],
+    inputs: Vec<Input>,
+    options: &Options,
+) -> Result<Vec<Measured>, Unmeasured> {
+    let (mut all, interrupt) = (Vec::new(), Interrupt::watch());
+    for (scene, input) in scenes.iter().zip(inputs) {
+        match measure(scene.as_deref(), input, options, scenes.len(), &interrupt) {
+            Ok(measured) => all.push(measured),
+            // What was measured before is worth showing.
+            Err(Unmeasured::Interrupted(_)) if !all.is_empty() => break,
+            Err(unmeasured) => return Err(unmeasured),
+        }
+    }
+    Ok(all)
+}
+
 /// Measures on one of `scenes` scenes.
-fn measure(scene: Option<&Path>, input: Input, options: &Options, scenes: usize) -> Result<Measured, String> {
+fn measure(
+    scene: Option<&Path>,
+    input: Input,
+    options: &Options,
+    scenes: usize,
+    interrupt: &Interrupt,
+) -> Result<Measured, Unmeasured> {
     let ways = ways(options);
     let tile = options.tile.of(input.width, input.height)?;
-    let children = ways.iter().map(|&way| Children::new(scene, &options.scene_options, way, tile));
+    let children = ways.iter().map(|&way| Children::new(scene, &options.scene_options, way, tile, interrupt));
     let mut children = children.collect::<Result<Vec<Children>, _>>()?;
     let mut executors: Vec<&mut dyn Executor> =
         children.iter_mut().map(|children| children as &mut dyn Executor).collect();
 
-    let bar = Share::new();
-    let watch = Watch::start();
     let reference = rayweave_registry::reference();
     let protocol = protocol(options, ways.len(), scenes);
-    let comparisons = protocol.run_together(reference, &entries(options), &mut executors, |progress| {
-        // Drawn here and nowhere else: between the timed spans.
-        bar.show(progress.fraction, format!("{}, threads: {}", progress.strategy, progress.threads));
+    let (comparisons, _, noise) = watched(|bar| {
+        protocol.run_together(reference, &entries(options), &mut executors, |progress| {
+            // Drawn here and nowhere else: between the timed spans.
+            bar.show(progress.fraction, format!("{}, threads: {}", progress.strategy, progress.threads));
+        })
     });
-    let noise = watch.finish(Machine::here().logical_cores);
-    drop(bar);
-    let comparisons = comparisons.map_err(|e| e.to_string())?;
+    let comparisons = comparisons.map_err(|error| match error {
+        CompareError::Interrupted(_) => Unmeasured::Interrupted(error.to_string()),
+        CompareError::Reference(_) => Unmeasured::Failed(error.to_string()),
+    })?;
     let subjects = ways.iter().map(|&share_samples| subject(&input, share_samples, tile)).collect();
     Ok(Measured { input, subjects, comparisons, noise })
 }

@@ -4,13 +4,12 @@ use crate::input::Input;
 use crate::options::{SceneOptions, TileOption, all_threads, distinct, parse_threads, strategy_parser};
 use crate::output::{PendingFile, distinct_files};
 use crate::picture::Format;
-use crate::progress::Share;
+use crate::watched::watched;
 use crate::{Outcome, print};
 use clap::Args;
 use rayweave_core::{Area, Strategy, primary_rays};
+use rayweave_measure::Protocol;
 use rayweave_measure::explanation::{Experiment, ExplainError};
-use rayweave_measure::noise::Watch;
-use rayweave_measure::{Machine, Protocol};
 use rayweave_report::explain::Report;
 use std::fs;
 use std::num::NonZeroUsize;
@@ -69,14 +68,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
         reference: rayweave_registry::reference(),
         protocol: Protocol { budget: PROTOCOL.budget * strategies.len() as u32, ..PROTOCOL },
     };
-    let (bar, watch) = (Share::new(), Watch::start());
-    // Drawn between the timed spans.
-    let explained = experiment.run(&strategies, arguments.threads.unwrap_or_else(all_threads), |fraction| {
-        bar.show(fraction, "");
-    });
-    let machine = Machine::here();
-    let noise = watch.finish(machine.logical_cores);
-    drop(bar);
+    let threads = arguments.threads.unwrap_or_else(all_threads);
+    // The bar is drawn between the timed spans.
+    let (explained, machine, noise) =
+        watched(|bar| experiment.run(&strategies, threads, |fraction| bar.show(fraction, "")));
     let explanation = match explained {
         Ok(explanation) => explanation,
         Err(error @ ExplainError::Different { .. }) => {

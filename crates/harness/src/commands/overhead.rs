@@ -2,13 +2,12 @@
 
 use crate::options::{all_threads, chosen, parse_seconds, parse_threads, strategy_parser};
 use crate::output::PendingFile;
-use crate::progress::Share;
+use crate::watched::watched;
 use crate::{Outcome, print};
 use clap::Args;
 use rayweave_core::Strategy;
-use rayweave_measure::noise::Watch;
+use rayweave_measure::Protocol;
 use rayweave_measure::overhead::Overhead;
-use rayweave_measure::{Machine, Protocol};
 use rayweave_report::overhead::Report;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -43,13 +42,9 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
         threads: arguments.threads.unwrap_or_else(all_threads),
         protocol: Protocol { budget: arguments.time_limit.unwrap_or(PROTOCOL.budget), ..PROTOCOL },
     };
-    let (bar, watch) = (Share::new(), Watch::start());
-    let study = overhead.run(|strategy, fraction| {
-        bar.show(fraction, strategy.to_owned());
-    });
-    drop(bar);
-    let machine = Machine::here();
-    let (study, noise) = (study.map_err(|e| e.to_string())?, watch.finish(machine.logical_cores));
+    let (study, machine, noise) =
+        watched(|bar| overhead.run(|strategy, fraction| bar.show(fraction, strategy.to_owned())));
+    let study = study.map_err(|e| e.to_string())?;
     let report = Report { study: &study, machine: &machine, noise: &noise };
     print(&format!("{}\n", report.table()))?;
     json.map_or(Ok(()), |file| file.finish(report.json().as_bytes()))?;

@@ -3,13 +3,12 @@
 use crate::input::Input;
 use crate::options::{SceneOptions, TileOption, all_threads, chosen, parse_thread_counts, strategy_parser};
 use crate::output::{PendingFile, distinct_files};
-use crate::progress::Share;
+use crate::watched::watched;
 use crate::{Outcome, print};
 use clap::Args;
 use rayweave_core::Strategy;
+use rayweave_measure::Protocol;
 use rayweave_measure::forecast::{Question, Stage};
-use rayweave_measure::noise::Watch;
-use rayweave_measure::{Machine, Protocol};
 use rayweave_report::forecast::Report;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -61,17 +60,12 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
         available: all_threads(),
         protocol: Protocol::default(),
     };
-    let (bar, watch) = (Share::new(), Watch::start());
-    let forecast = question.answer(|stage, fraction| {
-        let message = match stage {
-            Stage::Overheads => "overheads of threads",
-            Stage::Renderings => "renderings",
-        };
-        bar.show(fraction, message);
-    });
-    let machine = Machine::here();
-    let noise = watch.finish(machine.logical_cores);
-    drop(bar);
+    let message = |stage| match stage {
+        Stage::Overheads => "overheads of threads",
+        Stage::Renderings => "renderings",
+    };
+    let (forecast, machine, noise) =
+        watched(|bar| question.answer(|stage, fraction| bar.show(fraction, message(stage))));
     let forecast = forecast.map_err(|e| format!("{}: {e}", input.name))?;
     let report = Report {
         scene: &input.name,

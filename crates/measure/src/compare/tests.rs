@@ -35,10 +35,12 @@ static POOL: Named = Named("pool", ThreadsStart::Prepare);
 pub(super) static QUEUE: Named = Named("queue", ThreadsStart::Render);
 
 /// Answers the n-th call of a strategy by a function of its name and n, and moves the clock by the answer.
-struct Fake<F> {
+pub(super) struct Fake<F> {
     answer: F,
-    calls: Vec<&'static str>,
+    pub(super) calls: Vec<&'static str>,
     clock: Duration,
+    /// It is interrupted during this call, counted from 1.
+    pub(super) interrupted_in: usize,
 }
 
 impl<F: FnMut(&'static str, usize) -> Result<Rendering, String>> Executor for Fake<F> {
@@ -53,17 +55,21 @@ impl<F: FnMut(&'static str, usize) -> Result<Rendering, String>> Executor for Fa
     fn elapsed(&self) -> Duration {
         self.clock
     }
+
+    fn is_interrupted(&self) -> bool {
+        self.calls.len() >= self.interrupted_in
+    }
 }
 
-fn fake<F: FnMut(&'static str, usize) -> Result<Rendering, String>>(answer: F) -> Fake<F> {
-    Fake { answer, calls: Vec::new(), clock: Duration::ZERO }
+pub(super) fn fake<F: FnMut(&'static str, usize) -> Result<Rendering, String>>(answer: F) -> Fake<F> {
+    Fake { answer, calls: Vec::new(), clock: Duration::ZERO, interrupted_in: usize::MAX }
 }
 
 pub(super) fn picture(brightness: f32) -> Digest {
     Image::filled(1, 1, [brightness; 3]).expect("a pixel").digest()
 }
 
-fn right(render_ns: u64) -> Result<Rendering, String> {
+pub(super) fn right(render_ns: u64) -> Result<Rendering, String> {
     let sample = Sample { prepare_ns: 7, render_ns, ..Sample::default() };
     Ok(Rendering { sample, digest: picture(1.0), first_digest: None })
 }
@@ -76,7 +82,7 @@ pub(super) fn entry(strategy: &Named, threads: usize) -> Entry<'_> {
     Entry { strategy, threads: NonZeroUsize::new(threads).expect("not 0") }
 }
 
-fn protocol(min_rounds: usize, max_rounds: usize, budget_ns: u64) -> Protocol {
+pub(super) fn protocol(min_rounds: usize, max_rounds: usize, budget_ns: u64) -> Protocol {
     Protocol { min_rounds, max_rounds, budget: Duration::from_nanos(budget_ns), goal: None, seed: 3 }
 }
 

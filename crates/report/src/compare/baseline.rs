@@ -16,6 +16,7 @@ pub struct Baseline {
     schema: u32,
     digest: String,
     results: Vec<Earlier>,
+    noise: Option<EarlierNoise>,
     /// The settings, among all else.
     #[serde(flatten)]
     rest: Map<String, Value>,
@@ -29,6 +30,12 @@ struct Earlier {
     /// None of rows that failed or gave another picture.
     median_ns: Option<f64>,
     samples_ns: Vec<u64>,
+    speedup: Option<Ratio>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+struct EarlierNoise {
+    disturbed: bool,
 }
 
 /// A row now and then.
@@ -106,6 +113,14 @@ impl Baseline {
             }
         })
         .collect()
+    }
+
+    /// Whether its own times are to be doubted.
+    fn is_doubtful(&self) -> bool {
+        let control = self.results.iter().find(|earlier| earlier.control);
+        let control = control.and_then(|control| control.speedup).map(Interval::from);
+        self.noise.is_some_and(|noise| noise.disturbed)
+            || control.is_some_and(|control| !control.contains(1.0))
     }
 
     fn samples_of(&self, row: &Row) -> &[u64] {
@@ -187,6 +202,12 @@ pub(super) fn text(baseline: &Baseline, report: &Report<'_>) -> String {
                 .to_owned(),
         );
     }
+    if baseline.is_doubtful() {
+        lines.push(
+            "The baseline was disturbed, or its control has no 1 in it: believe no verdict, measure a new baseline."
+                .to_owned(),
+        );
+    }
     if baseline.digest != report.comparison.digest.to_string() {
         lines.push("The baseline drew ANOTHER PICTURE: that may be all of the difference.".to_owned());
     }
@@ -252,6 +273,32 @@ mod tests {
         let other = Baseline { digest: "of something else".to_owned(), ..baseline };
         let text = with_report(&now, |report| Report { baseline: Some(&other), ..*report }.table());
         assert!(text.contains("ANOTHER PICTURE"), "{text}");
+    }
+
+    /// Catches a verdict that rests on an earlier run which was itself no good.
+    #[test]
+    fn a_doubtful_baseline_is_told() {
+        use rayweave_measure::Noise;
+        use std::time::Duration;
+
+        let told = |comparison: &Comparison, foreign: Option<Duration>| {
+            let of_then = |report: &Report<'_>| {
+                let noise = Noise { foreign, ..report.noise.clone() };
+                Report { noise: &noise, ..*report }.json()
+            };
+            let then = Baseline::parse(&with_report(comparison, of_then)).expect("a comparison");
+            let now = slowed(1.0, 1.0);
+            let text = with_report(&now, |report| Report { baseline: Some(&then), ..*report }.table());
+            text.contains(
+                "The baseline was disturbed, or its control has no 1 in it: believe no verdict, measure a new baseline.",
+            )
+        };
+        let mut drifted = slowed(1.0, 1.0);
+        drifted.rows[1].figures.as_mut().expect("figures").speedup =
+            Interval { median: 0.9, low: 0.8, high: 0.99 };
+        let (quiet, busy) = (Some(Duration::ZERO), Some(Duration::from_secs(3600)));
+        assert!(!told(&slowed(1.0, 1.0), quiet), "a good baseline is doubted");
+        assert!(told(&drifted, quiet) && told(&slowed(1.0, 1.0), busy), "a doubtful baseline is believed");
     }
 
     /// A setting that is changed, and how that is told.

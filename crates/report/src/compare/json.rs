@@ -17,6 +17,7 @@ struct Object<'a> {
     #[serde(flatten)]
     settings: Settings<'a>,
     rounds: usize,
+    interrupted: bool,
     seed: u64,
     digest: String,
     machine: Facts<'a>,
@@ -132,6 +133,7 @@ fn object<'a>(report: &Report<'a>) -> Object<'a> {
         schema: SCHEMA,
         settings: subject.into(),
         rounds: comparison.rounds,
+        interrupted: comparison.interrupted,
         seed: comparison.seed,
         digest: comparison.digest.to_string(),
         machine: Facts::new(machine),

@@ -1,7 +1,7 @@
 //! Several scenes beside each other: which strategy wins where, and why.
 
 use super::table::label;
-use super::{Report, csv, json, scene_file};
+use super::{Report, csv, json, markdown, scene_file};
 use crate::{machine, style};
 use rayweave_core::strategy::{Dealing, Piece};
 use rayweave_measure::compare::{Role, Row};
@@ -29,9 +29,8 @@ impl ScenesReport<'_> {
     pub fn table(&self) -> String {
         let header = ["strategy".to_owned(), "threads".to_owned()];
         let header: Vec<String> = header.into_iter().chain(self.reports.iter().map(name)).collect();
-        let rows = self.reports.first().map(|report| &report.comparison.rows[..]).unwrap_or_default();
-        let rows = (0..rows.len()).map(|number| self.row(number));
-        let table = style::table(header, rows, 1..=1 + self.reports.len());
+        let rows = self.rows(|best| format!("* {best}"));
+        let table = style::table(header, rows.into_iter(), 1..=1 + self.reports.len());
         let mut lines = vec![
             "speed-up over the reference of the same scene [95 % interval]; * the highest of a scene"
                 .to_owned(),
@@ -39,14 +38,25 @@ impl ScenesReport<'_> {
             table,
             String::new(),
         ];
-        lines.extend(self.reports.iter().zip(self.loads).map(|(report, load)| why(report, load)));
+        lines.extend(self.notes());
+        lines.extend(self.reports.first().map(|report| machine::text(report.machine)));
+        lines.join("\n")
+    }
+
+    /// A sentence on each scene, and what is to be doubted.
+    fn notes(&self) -> Vec<String> {
+        let mut lines: Vec<String> =
+            self.reports.iter().zip(self.loads).map(|(report, load)| why(report, load)).collect();
         let disturbed = self.reports.iter().filter(|report| report.noise.is_disturbing()).map(name);
         let disturbed: Vec<String> = disturbed.collect();
         if !disturbed.is_empty() {
             lines.push(format!("DISTURBED by other programs: {}.", disturbed.join(", ")));
         }
-        lines.extend(self.reports.first().map(|report| machine::text(report.machine)));
-        lines.join("\n")
+        let interrupted = self.reports.iter().filter(|report| report.comparison.interrupted);
+        lines.extend(interrupted.map(|report| {
+            format!("INTERRUPTED: {} after {} rounds.", name(report), report.comparison.rounds)
+        }));
+        lines
     }
 
     /// For programs: `schema`, 1, and `comparisons`, a list of [`Report::json`]'s objects.
@@ -61,22 +71,29 @@ impl ScenesReport<'_> {
         csv::several(self.reports)
     }
 
-    /// The tables of [`Report::markdown`], one after the other.
+    /// What [`ScenesReport::table`] says, then the tables of [`Report::markdown`], one after the other.
     #[must_use]
     pub fn markdown(&self) -> String {
-        self.reports.iter().map(Report::markdown).collect::<Vec<_>>().join("\n")
+        let names: Vec<String> = self.reports.iter().map(name).collect();
+        let rows = self.rows(|best| format!("**{best}**"));
+        let tables: String = self.reports.iter().map(|report| format!("\n{}", report.markdown())).collect();
+        markdown::summary(&names, &rows, &self.notes()) + &tables
     }
 
-    fn row(&self, number: usize) -> Vec<String> {
-        let row = &self.reports[0].comparison.rows[number];
-        let head = [label(row), row.threads.to_string()];
-        let cells = self.reports.iter().map(|report| {
+    /// A row's name, its threads and its speed-up in each scene, the highest of a scene `marked`.
+    fn rows(&self, marked: impl Fn(String) -> String) -> Vec<Vec<String>> {
+        let rows = self.reports.first().map(|report| &report.comparison.rows[..]).unwrap_or_default();
+        let cell = |report: &Report<'_>, number: usize| {
             let row = &report.comparison.rows[number];
-            let Some(speedup) = speedup(row) else { return "failed".to_owned() };
-            let mark = if winner(report).is_some_and(|best| std::ptr::eq(best, row)) { "* " } else { "" };
-            format!("{mark}{}", style::interval(speedup))
-        });
-        head.into_iter().chain(cells).collect()
+            let Some(speedup) = speedup(row).map(style::interval) else { return "failed".to_owned() };
+            let best = winner(report).is_some_and(|best| std::ptr::eq(best, row));
+            if best { marked(speedup) } else { speedup }
+        };
+        let cells = |(number, row)| {
+            let head = [label(row), row.threads.to_string()];
+            head.into_iter().chain(self.reports.iter().map(|report| cell(report, number))).collect()
+        };
+        rows.iter().enumerate().map(cells).collect()
     }
 }
 
@@ -242,7 +259,23 @@ mod tests {
         assert_eq!(value["comparisons"][1]["scene"], "corner.toml");
         let csv = with_scenes(|scenes| scenes.csv());
         assert_eq!(csv.lines().count(), 1 + 2 * 5);
+    }
+
+    #[test]
+    fn markdown_begins_with_who_wins_where() {
         let markdown = with_scenes(|scenes| scenes.markdown());
+        let (text, lines) = (with_scenes(|scenes| scenes.table()), markdown.lines().collect::<Vec<_>>());
+        let head =
+            "speed-up over the reference of the same scene [95 % interval]; the highest of a scene in bold";
+        assert_eq!(lines[..2], [head, ""]);
+        assert_eq!(lines[2..4], ["| strategy | threads | even | corner |", "|---|--:|--:|--:|"]);
+        assert_eq!(lines[4], "| sequential | 1 | 1.00 [0.96, 1.06] | **1.00 [0.96, 1.06]** |");
+        assert_eq!(lines[6], "| pool | 9000 | **1.95 [1.91, 2.01]** | 0.90 [0.85, 0.95] |");
+        let sentences: Vec<&str> = lines.iter().filter_map(|line| line.strip_prefix("- ")).collect();
+        assert!(
+            sentences.len() == 2 && sentences.iter().all(|sentence| text.contains(sentence)),
+            "{markdown}"
+        );
         assert_eq!(markdown.matches("| pool | 9000 | 1026 |").count(), 2, "{markdown}");
         assert!(markdown.contains("| sequential (control) | 1 | 2010 | 1.00 [0.96, 1.06] | 100 % | 2512 |"));
         assert!(markdown.contains("| queue | 2 | wrong picture | | | |"), "{markdown}");

@@ -81,8 +81,9 @@ pub(super) fn heading(Report { subject, comparison, .. }: &Report<'_>) -> String
         (density, Sampling::Lattice) => format!("antialiasing {density}"),
         (density, sampling) => format!("antialiasing {density} by {sampling}"),
     };
+    let interrupted = if comparison.interrupted { "interrupted after " } else { "" };
     format!(
-        "{}, {} x {} pixels, {rays}, {}, tiles of {}; {} interleaved rounds, digest {}",
+        "{}, {} x {} pixels, {rays}, {}, tiles of {}; {interrupted}{} interleaved rounds, digest {}",
         subject.scene,
         subject.width,
         subject.height,
@@ -227,10 +228,14 @@ fn goal(comparison: &Comparison) -> Option<String> {
     let goal = comparison.goal?;
     Some(match comparison.imprecise_rows() {
         0 => format!("goal: each speed-up is known to +-{:.3} % or better.", goal * 100.0),
-        missed => format!(
-            "goal: {missed} speed-ups are not known to +-{:.3} %: time was up. Give more, --time-limit SECONDS.",
-            goal * 100.0
-        ),
+        missed => {
+            let why = if comparison.interrupted {
+                "it was interrupted"
+            } else {
+                "time was up. Give more, --time-limit SECONDS"
+            };
+            format!("goal: {missed} speed-ups are not known to +-{:.3} %: {why}.", goal * 100.0)
+        }
     })
 }
 

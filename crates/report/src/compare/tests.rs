@@ -68,7 +68,7 @@ pub(super) fn comparison() -> Comparison {
         wrong,
         failed,
     ];
-    Comparison { rows, digest: digest(1.0), rounds: 2, seed: 1, goal: None }
+    Comparison { rows, digest: digest(1.0), rounds: 2, seed: 1, goal: None, interrupted: false }
 }
 
 pub(super) fn machine() -> Machine {
@@ -228,7 +228,14 @@ fn what_is_to_be_doubted_is_told() {
     assert!(!goal(None).contains("goal:"));
     assert!(goal(Some(0.06)).contains("goal: each speed-up is known to +-6.000 % or better."));
     // The half of 0.1 is 5 % of the reference's speed-up, a little more of its control's, and 2.6 % of the pool's.
-    assert!(goal(Some(0.04)).contains("goal: 2 speed-ups are not known to +-4.000 %"));
+    assert!(goal(Some(0.04)).contains("goal: 2 speed-ups are not known to +-4.000 %: time was up."));
+
+    let stopped = Comparison { goal: Some(0.04), interrupted: true, ..comparison() };
+    let text = with_report(&stopped, |report| report.table());
+    assert!(text.contains("; interrupted after 2 interleaved rounds, digest "), "{text}");
+    assert!(text.contains("goal: 2 speed-ups are not known to +-4.000 %: it was interrupted."), "{text}");
+    let json = with_report(&stopped, |report| report.json());
+    assert!(json.contains("\"interrupted\": true"), "{json}");
 }
 
 #[test]

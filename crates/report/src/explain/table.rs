@@ -10,11 +10,12 @@ const NOTABLE: f64 = 0.01;
 
 pub(super) fn text(report: &Report<'_>) -> String {
     let mut lines = Vec::new();
+    let unit = Unit::of(report.explanation);
     for row in &report.explanation.rows {
-        lines.extend([heading(report.explanation, row), String::new()]);
-        lines.extend([causes(report.explanation, row), String::new()]);
-        lines.extend([sum(row), recording(row), String::new()]);
-        lines.extend([threads(report, row), String::new()]);
+        lines.extend([heading(report.explanation, row, unit), String::new()]);
+        lines.extend([causes(report.explanation, row, unit), String::new()]);
+        lines.extend([sum(row, unit), recording(row), String::new()]);
+        lines.extend([threads(report, row, unit), String::new()]);
         lines.extend([gaps(row), advice(row), String::new()]);
     }
     lines.extend(legend(report.explanation));
@@ -23,36 +24,36 @@ pub(super) fn text(report: &Report<'_>) -> String {
     lines.join("\n")
 }
 
-fn heading(explanation: &Explanation, row: &Row) -> String {
+fn heading(explanation: &Explanation, row: &Row, unit: Unit) -> String {
     let Explanation { reference, reference_ns, rounds, .. } = explanation;
     let Row { strategy, threads, wall_ns, .. } = row;
-    let speedup = reference_ns / wall_ns;
+    let (speedup, name) = (reference_ns / wall_ns, unit.name);
     format!(
-        "{strategy} on {threads} thread{}: {} ms, {reference} {} ms: speed-up {speedup:.2}, efficiency {:.0} %; \
+        "{strategy} on {threads} thread{}: {} {name}, {reference} {} {name}: speed-up {speedup:.2}, efficiency {:.0} %; \
          the quickest of {rounds} rounds",
         plural(*threads),
-        ms(*wall_ns),
-        ms(*reference_ns),
+        unit.text(*wall_ns),
+        unit.text(*reference_ns),
         100.0 * speedup / *threads as f64,
     )
 }
 
 /// Where the thread-time goes.
-fn causes(explanation: &Explanation, row: &Row) -> String {
+fn causes(explanation: &Explanation, row: &Row, unit: Unit) -> String {
     let all = row.thread_time_ns();
     let cells = |label: &str, ns: f64, sign: f64| {
         let share = ns / all;
         let speedup = sign * share * row.threads as f64;
-        [label.to_owned(), ms(ns), format!("{:.1} %", 100.0 * share), format!("{speedup:+.2}")]
+        [label.to_owned(), unit.text(ns), format!("{:.1} %", 100.0 * share), format!("{speedup:+.2}")]
     };
     let useful = cells("useful work", explanation.reference_ns, 1.0);
     let lost = Cause::ALL.map(|cause| cells(name(cause), row.losses.to(cause), -1.0));
     let rest = cells("not explained", row.lost_ns - row.losses.total_ns(), -1.0);
     let rows = [useful].into_iter().chain(lost).chain([rest]);
-    style::table(["thread-time", "ms", "", "speed-up"], rows, 1..=3)
+    style::table(["thread-time", unit.name, "", "speed-up"], rows, 1..=3)
 }
 
-fn sum(row: &Row) -> String {
+fn sum(row: &Row, unit: Unit) -> String {
     let (explained, lost) = (row.losses.total_ns(), row.lost_ns);
     // Of next to nothing there is no percentage.
     let share = if lost.abs() < NOTABLE * row.thread_time_ns() {
@@ -60,7 +61,7 @@ fn sum(row: &Row) -> String {
     } else {
         format!("{:.0} %", 100.0 * explained / lost)
     };
-    format!("adds up to {} of {} ms lost ({share})", ms(explained), ms(lost))
+    format!("adds up to {} of {} {} lost ({share})", unit.text(explained), unit.text(lost), unit.name)
 }
 
 fn recording(row: &Row) -> String {
@@ -68,32 +69,33 @@ fn recording(row: &Row) -> String {
 }
 
 /// What each thread does.
-fn threads(report: &Report<'_>, row: &Row) -> String {
+fn threads(report: &Report<'_>, row: &Row, unit: Unit) -> String {
+    let timed = |what| format!("{what}\n{}", unit.name);
     let header = [
-        "thread",
-        "begins\nms",
-        "busy\nms",
-        "between\nms",
-        "idle\nms",
-        "pieces",
-        "pixels",
-        "rays",
-        "long\ngaps",
-        "of\nms",
+        "thread".to_owned(),
+        timed("begins"),
+        timed("busy"),
+        timed("between"),
+        timed("idle"),
+        "pieces".to_owned(),
+        "pixels".to_owned(),
+        "rays".to_owned(),
+        "long\ngaps".to_owned(),
+        timed("of"),
     ];
     let count = |count: Option<u64>| count.map_or_else(|| "-".to_owned(), |count| count.to_string());
     let cells = |(index, thread): (usize, Thread<'_>)| {
         [
             label(thread.name, index),
-            ms(thread.begin_ns as f64),
-            ms(thread.busy_ns as f64),
-            ms(thread.between_ns as f64),
-            ms(thread.idle_ns as f64),
+            unit.text(thread.begin_ns as f64),
+            unit.text(thread.busy_ns as f64),
+            unit.text(thread.between_ns as f64),
+            unit.text(thread.idle_ns as f64),
             thread.pieces.to_string(),
             thread.pixels.to_string(),
             count(thread.primary_rays),
             thread.long_gaps.to_string(),
-            ms(thread.long_gaps_ns as f64),
+            unit.text(thread.long_gaps_ns as f64),
         ]
     };
     let without = row.threads.saturating_sub(row.timeline.lanes.len());
@@ -167,7 +169,29 @@ fn plural(count: usize) -> &'static str {
     if count == 1 { "" } else { "s" }
 }
 
-/// Milliseconds with two places after the point.
-fn ms(ns: f64) -> String {
-    format!("{:.2}", ns / 1e6)
+/// What times are told in, the same in all of a report, so that its strategies can be compared.
+#[derive(Clone, Copy)]
+struct Unit {
+    name: &'static str,
+    ns: f64,
+    decimals: usize,
+}
+
+/// Renderings that take less are told in microseconds.
+const SHORT_NS: f64 = 10e6;
+
+impl Unit {
+    /// By the shortest rendering.
+    fn of(explanation: &Explanation) -> Self {
+        let shortest = explanation.rows.iter().map(|row| row.wall_ns).fold(f64::INFINITY, f64::min);
+        if shortest < SHORT_NS {
+            Self { name: "us", ns: 1e3, decimals: 1 }
+        } else {
+            Self { name: "ms", ns: 1e6, decimals: 2 }
+        }
+    }
+
+    fn text(self, ns: f64) -> String {
+        format!("{:.*}", self.decimals, ns / self.ns)
+    }
 }

@@ -110,6 +110,28 @@ fn text_puts_a_figure_to_each_cause_and_adds_them_up() {
     );
 }
 
+/// Catches times of which no digit is left, and strategies of one report told in several units.
+#[test]
+fn short_renderings_are_told_in_microseconds() {
+    let (machine, noise) = (Machine::here(), noise());
+    let mut explanation = explanation();
+    let told = |explanation: &Explanation| {
+        let rays = |_| None;
+        let (size, tile, machine, noise) = ((8, 4), 4, &machine, &noise);
+        Report { scene: "room", size, tile, explanation, rays: &rays, machine, noise }.text()
+    };
+    explanation.rows[1].wall_ns = 10.0 * MS;
+    assert!(told(&explanation).contains("by-pixel on 3 threads: 10.00 ms, sequential 100.00 ms: "));
+    explanation.rows[1].wall_ns = 0.0623 * MS;
+    let text = told(&explanation);
+    assert!(text.contains("by-pixel on 3 threads: 62.3 us, sequential 100000.0 us: "), "{text}");
+    assert!(text.contains("adds up to 18800.0 of 20000.0 us lost (94 %)"), "{text}");
+    let words: Vec<&str> = text.split_whitespace().collect();
+    assert!(!words.contains(&"ms"), "{text}");
+    let queue: Vec<&str> = "queue 1 1.5 2.5 2.0 5.5 2 16 - 1 2.0".split(' ').collect();
+    assert!(words.windows(queue.len()).any(|window| window == queue), "{text}");
+}
+
 /// Catches a percentage of next to nothing, and advice where there is nothing to gain.
 #[test]
 fn little_lost_is_said_to_be_little() {

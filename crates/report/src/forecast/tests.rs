@@ -74,6 +74,7 @@ fn forecast() -> Forecast {
             rounds: 6,
             seed: 1,
             goal: None,
+            interrupted: false,
         },
     }
 }

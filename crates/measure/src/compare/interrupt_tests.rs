@@ -1,0 +1,46 @@
+//! Measurements that somebody ends.
+
+use super::tests::{QUEUE, REFERENCE, entry, fake, protocol, right};
+use super::*;
+
+/// Three rows: a call for the reference's picture, three that warm up, three a round.
+fn interrupted_in(call: usize) -> Result<Comparison, CompareError> {
+    let mut calls = 0;
+    // The call that is interrupted fails, since its process is interrupted too.
+    let mut executor = fake(|_, _| {
+        calls += 1;
+        if calls == call { Err("killed".to_owned()) } else { right(1) }
+    });
+    executor.interrupted_in = call;
+    let result = protocol(8, 10, u64::MAX).run(&REFERENCE, &[entry(&QUEUE, 4)], &mut executor, |_| {});
+    assert_eq!(executor.calls.len(), call, "it went on");
+    result
+}
+
+/// Catches the rounds before thrown away, those of the broken round counted, and a rendering that was killed told as
+/// a failure, wherever in a round it is.
+#[test]
+fn what_is_interrupted_is_of_the_complete_rounds() {
+    for turn in 0..3 {
+        let comparison = interrupted_in(1 + 3 + 7 * 3 + turn + 1).expect("enough rounds");
+        assert_eq!((comparison.rounds, comparison.interrupted), (7, true), "turn {turn}");
+        for row in &comparison.rows {
+            assert!(row.holds() && row.figures.is_some(), "turn {turn}: {row:?}");
+            assert_eq!(row.samples.len(), 7, "turn {turn}: {}", row.strategy);
+        }
+    }
+    let all = protocol(8, 10, u64::MAX).run(&REFERENCE, &[], &mut fake(|_, _| right(1)), |_| {});
+    assert!(!all.expect("a reference picture").interrupted);
+}
+
+/// Catches a table of fewer rounds than an interval takes.
+#[test]
+fn of_too_few_rounds_there_is_no_table() {
+    for (call, rounds) in [(1, 0), (3, 0), (4, 0), (5, 0), (8, 1), (1 + 3 + 6 * 3, 5)] {
+        let error = interrupted_in(call).expect_err("too early").to_string();
+        let expected =
+            format!("interrupted after {rounds} complete rounds: there is no table of fewer than 6");
+        assert_eq!(error, expected, "call {call}");
+    }
+    assert_eq!(interrupted_in(1 + 3 + 6 * 3 + 1).expect("enough rounds").rounds, 6);
+}
