@@ -5,8 +5,8 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use tempfile::{Builder, NamedTempFile};
 
-/// A file that will be there once it is whole. Until then an old one of this name stays, and nothing lies beside it:
-/// what ends before its end leaves nothing behind.
+/// A file that will be there once it is whole. Until then an old one of this name stays, and nothing lies beside it,
+/// so that a program that is killed while it computes leaves nothing behind.
 pub struct PendingFile {
     path: PathBuf,
 }

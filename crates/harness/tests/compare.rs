@@ -301,7 +301,7 @@ fn scenes_stand_beside_each_other() {
     }
 }
 
-/// A comparison without end, interrupted as a terminal does it: all processes of the group at once, when it has begun
+/// A comparison that would take a minute, interrupted as a terminal does it: all processes of the group at once, when it has begun
 /// `samples` processes.
 #[cfg(target_os = "linux")]
 fn interrupted_at(samples: usize, options: &str) -> (program::Run, Option<Value>) {
@@ -310,9 +310,9 @@ fn interrupted_at(samples: usize, options: &str) -> (program::Run, Option<Value>
     use std::process::{Command, Stdio};
 
     let folder = folder();
-    let endless = "compare --strategy row-counter --time-limit 100000 --json a.json";
+    let long = "compare --strategy row-counter --time-limit 60 --json a.json";
     let mut program = Command::new(env!("CARGO_BIN_EXE_rayweave"))
-        .args(endless.split_whitespace().chain(options.split_whitespace()))
+        .args(long.split_whitespace().chain(options.split_whitespace()))
         .current_dir(folder.path())
         .process_group(0)
         .stdout(Stdio::piped())
@@ -367,6 +367,7 @@ fn who_interrupts_it_early_is_told_that_there_is_nothing() {
     // The first sample would take minutes.
     let (run, object) = interrupted_at(1, "--size 2000x2000 --antialiasing 32");
     assert_eq!((run.status, run.stdout.as_str()), (130, ""), "{}", run.stderr);
-    let told = "error: interrupted after 0 complete rounds: there is no table of fewer than 6\n";
+    let told = "error: interrupted with 0 complete rounds, of fewer than 6 there is no table: let it run longer, or \
+                take a smaller --size\n";
     assert_eq!((run.stderr.as_str(), object), (told, None));
 }

@@ -141,8 +141,20 @@ pub enum CompareError {
     #[error("the reference failed: {0}")]
     Reference(String),
     /// There are too few samples for an interval.
-    #[error("interrupted after {0} complete rounds: there is no table of fewer than {LEAST_VALUES}")]
+    #[error(
+        "interrupted with {0} complete rounds, of fewer than {LEAST_VALUES} there is no table: let it run longer, or \
+         take a smaller --size"
+    )]
     Interrupted(usize),
+}
+
+/// What `render` gives, unless somebody wants no more before or after it.
+fn uninterrupted<T>(executor: &mut dyn Executor, render: impl FnOnce(&mut dyn Executor) -> T) -> Option<T> {
+    if executor.is_interrupted() {
+        return None;
+    }
+    let result = render(executor);
+    (!executor.is_interrupted()).then_some(result)
 }
 
 impl Comparison {
@@ -223,11 +235,8 @@ impl Protocol {
         let roles = || [Role::Reference, Role::Control].into_iter().chain(std::iter::repeat(Role::Contender));
         let new_rows = || entries.iter().zip(roles()).map(|(entry, role)| Row::new(entry, role)).collect();
 
-        let rendering = first.render(&base);
-        if first.is_interrupted() {
-            return Err(CompareError::Interrupted(0));
-        }
-        let digest = rendering.map_err(CompareError::Reference)?.digest;
+        let rendering = uninterrupted(&mut **first, |executor| executor.render(&base));
+        let digest = rendering.ok_or(CompareError::Interrupted(0))?.map_err(CompareError::Reference)?.digest;
         let mut tables: Vec<Vec<Row>> = executors.iter().map(|_| new_rows()).collect();
         let mut schedule = self.schedule(tables.len() * entries.len());
         let mut running = vec![true; tables.len()];
@@ -259,15 +268,14 @@ impl Protocol {
                 rounds: turn.round.unwrap_or(0),
                 fraction: turn.fraction,
             });
-            let executor = &mut executors[table];
-            let result = match turn.round {
+            let result = uninterrupted(&mut *executors[table], |executor| match turn.round {
                 None => executor.warm_up(entry),
                 Some(_) => executor.render(entry).map(|rendering| (rendering, None)),
-            };
-            if executor.is_interrupted() {
+            });
+            let Some(result) = result else {
                 interrupted_after = Some(turn.round.unwrap_or(0));
                 break;
-            }
+            };
             match turn.round {
                 None => row.warm_up(result, digest),
                 Some(_) => row.measure(result.map(|(rendering, _)| rendering), digest),

@@ -103,10 +103,11 @@ pub fn run(scene: Option<&Path>, options: &Options) -> Result<Outcome, String> {
     if !options.scenes.is_empty() {
         let reports: Vec<Report<'_>> =
             measured.iter().map(|measured| measured.report(0, &machine, None)).collect();
-        let loads = measured.iter().map(|measured| measured.load(options)).collect::<Result<Vec<_>, _>>()?;
-        let all = ScenesReport { reports: &reports, loads: &loads };
-        let missing = missing_line(&scenes[measured.len()..]);
-        print(&format!("{}\n{missing}{left_out}", all.table()))?;
+        let loads: Vec<&Load> = measured.iter().filter_map(|measured| measured.load.as_ref()).collect();
+        let not_measured = scenes[measured.len()..].iter().flatten().map(|path| path.display().to_string());
+        let not_measured: Vec<String> = not_measured.collect();
+        let all = ScenesReport { reports: &reports, loads: &loads, not_measured: &not_measured };
+        print(&format!("{}\n{left_out}", all.table()))?;
         files.finish(&all.json(), &all.csv(), &all.markdown())?;
     } else if first.comparisons.len() == 2 {
         let both =
@@ -119,12 +120,12 @@ pub fn run(scene: Option<&Path>, options: &Options) -> Result<Outcome, String> {
         files.finish(&report.json(), &report.csv(), &report.markdown())?;
     }
     let mut comparisons = measured.iter().flat_map(|measured| &measured.comparisons);
-    let interrupted = measured.len() < scenes.len() || comparisons.clone().any(|done| done.interrupted);
+    let interrupted = measured.len() < scenes.len() || measured.iter().any(Measured::interrupted);
     let hold = comparisons.all(Comparison::holds);
-    Ok(match (interrupted, hold) {
-        (true, _) => Outcome::Interrupted,
-        (false, true) => Outcome::Held,
-        (false, false) => Outcome::Failed,
+    Ok(match (hold, interrupted) {
+        (false, _) => Outcome::Failed,
+        (true, true) => Outcome::Interrupted,
+        (true, false) => Outcome::Held,
     })
 }
 
@@ -188,18 +189,14 @@ fn no_baseline(path: &Path, reason: &str) -> String {
     format!("{}: cannot be a baseline: {reason}", path.display())
 }
 
-/// Which scenes an interruption left out.
-fn missing_line(scenes: &[Option<PathBuf>]) -> String {
-    let names: Vec<String> = scenes.iter().flatten().map(|path| path.display().to_string()).collect();
-    if names.is_empty() { String::new() } else { format!("not measured: {}\n", names.join(", ")) }
-}
-
 /// A scene, and a comparison for each way to compute its picture, measured in the same rounds.
 struct Measured {
     input: Input,
     subjects: Vec<Subject>,
     comparisons: Vec<Comparison>,
     noise: Noise,
+    /// How the cost lies in the picture, if there are other scenes.
+    load: Option<Load>,
 }
 
 impl Measured {
@@ -208,11 +205,8 @@ impl Measured {
         Report { subject, comparison, machine, noise: &self.noise, baseline }
     }
 
-    /// How the cost lies in the picture.
-    fn load(&self, options: &Options) -> Result<Load, String> {
-        let (width, height) = (self.input.width, self.input.height);
-        let (work, tile) = (self.input.work(width, height)?, options.tile.of(width, height)?);
-        Load::of(&*work, width, height, tile).map_err(|e| e.to_string())
+    fn interrupted(&self) -> bool {
+        self.comparisons.iter().any(|comparison| comparison.interrupted)
     }
 }
 
@@ -258,7 +252,7 @@ impl From<String> for Unmeasured {
     }
 }
 
-/// Measures on one scene after the other; only on the first of them if it is interrupted then.
+/// Measures on one scene after the other, until it is interrupted: on one of them at least.
 fn measure_all(
     scenes: &[Option<PathBuf>],
     inputs: Vec<Input>,
@@ -267,6 +261,10 @@ fn measure_all(
     let (mut all, interrupt) = (Vec::new(), Interrupt::watch());
     for (scene, input) in scenes.iter().zip(inputs) {
         match measure(scene.as_deref(), input, options, scenes.len(), &interrupt) {
+            Ok(measured) if measured.interrupted() => {
+                all.push(measured);
+                break;
+            }
             Ok(measured) => all.push(measured),
             // What was measured before is worth showing.
             Err(Unmeasured::Interrupted(_)) if !all.is_empty() => break,
@@ -291,6 +289,7 @@ fn measure(
     let mut executors: Vec<&mut dyn Executor> =
         children.iter_mut().map(|children| children as &mut dyn Executor).collect();
 
+    let load = (!options.scenes.is_empty()).then(|| load_of(&input, tile)).transpose()?;
     let reference = rayweave_registry::reference();
     let protocol = protocol(options, ways.len(), scenes);
     let (comparisons, _, noise) = watched(|bar| {
@@ -304,7 +303,13 @@ fn measure(
         CompareError::Reference(_) => Unmeasured::Failed(error.to_string()),
     })?;
     let subjects = ways.iter().map(|&share_samples| subject(&input, share_samples, tile)).collect();
-    Ok(Measured { input, subjects, comparisons, noise })
+    Ok(Measured { input, subjects, comparisons, noise, load })
+}
+
+/// How the cost lies in the picture.
+fn load_of(input: &Input, tile: NonZeroU32) -> Result<Load, String> {
+    let work = input.work(input.width, input.height)?;
+    Load::of(&*work, input.width, input.height, tile).map_err(|e| e.to_string())
 }
 
 /// What is compared with the reference.

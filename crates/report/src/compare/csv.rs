@@ -47,6 +47,7 @@ struct Line<'a> {
     one_shot_speedup_high: Option<f64>,
     cpu_ns: Option<u64>,
     disturbed: bool,
+    interrupted: bool,
 }
 
 pub(super) fn text(report: &Report<'_>) -> String {
@@ -66,7 +67,7 @@ fn lines<'a>(report: &Report<'a>) -> impl Iterator<Item = Line<'a>> {
 }
 
 fn line<'a>(report: &Report<'a>, row: &'a Row) -> Line<'a> {
-    let Report { subject, machine, noise, .. } = report;
+    let Report { subject, comparison, machine, noise, .. } = report;
     let figures = row.figures.as_ref();
     let speedup = figures.map(|figures| figures.speedup);
     let one_shot = figures.and_then(|figures| figures.one_shot);
@@ -111,5 +112,6 @@ fn line<'a>(report: &Report<'a>, row: &'a Row) -> Line<'a> {
         one_shot_speedup_high: one_shot.map(|one_shot| one_shot.speedup.high),
         cpu_ns: figures.and_then(|figures| figures.cpu_ns).map(|ns| ns.round() as u64),
         disturbed: noise.is_disturbing(),
+        interrupted: comparison.interrupted,
     }
 }

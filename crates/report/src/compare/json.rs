@@ -112,10 +112,12 @@ pub(super) fn text(report: &Report<'_>) -> String {
 struct Several<'a> {
     schema: u32,
     comparisons: Vec<Object<'a>>,
+    not_measured: &'a [String],
 }
 
-pub(super) fn several(reports: &[Report<'_>]) -> String {
-    json::text(&Several { schema: SCHEMA, comparisons: reports.iter().map(object).collect() })
+pub(super) fn several(reports: &[Report<'_>], not_measured: &[String]) -> String {
+    let comparisons = reports.iter().map(object).collect();
+    json::text(&Several { schema: SCHEMA, comparisons, not_measured })
 }
 
 pub(super) fn both(report: &BothReport<'_>) -> String {

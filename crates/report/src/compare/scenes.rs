@@ -13,7 +13,9 @@ pub struct ScenesReport<'a> {
     /// One for each scene, one or more.
     pub reports: &'a [Report<'a>],
     /// How the cost lies in the scenes' pictures.
-    pub loads: &'a [Load],
+    pub loads: &'a [&'a Load],
+    /// The scenes that an interruption left out.
+    pub not_measured: &'a [String],
 }
 
 /// Below it the cost counts as even.
@@ -56,13 +58,16 @@ impl ScenesReport<'_> {
         lines.extend(interrupted.map(|report| {
             format!("INTERRUPTED: {} after {} rounds.", name(report), report.comparison.rounds)
         }));
+        if !self.not_measured.is_empty() {
+            lines.push(format!("INTERRUPTED before it was measured: {}.", self.not_measured.join(", ")));
+        }
         lines
     }
 
-    /// For programs: `schema`, 1, and `comparisons`, a list of [`Report::json`]'s objects.
+    /// For programs: `schema`, 1, `comparisons`, a list of [`Report::json`]'s objects, and `not_measured`.
     #[must_use]
     pub fn json(&self) -> String {
-        json::several(self.reports)
+        json::several(self.reports, self.not_measured)
     }
 
     /// The lines of [`Report::csv`] of all scenes.
@@ -204,7 +209,9 @@ mod tests {
         let reports: Vec<Report<'_>> = subjects.iter().zip([&even, &corner]).map(report).collect();
         let costs = vec![1; 9000];
         let uneven: Vec<u64> = std::iter::once(27_000).chain(costs.iter().copied()).collect();
-        read(&ScenesReport { reports: &reports, loads: &[load(&costs), load(&uneven)] })
+        let (even, uneven) = (load(&costs), load(&uneven));
+        let not_measured = ["later.toml".to_owned()];
+        read(&ScenesReport { reports: &reports, loads: &[&even, &uneven], not_measured: &not_measured })
     }
 
     #[test]
@@ -223,6 +230,7 @@ mod tests {
             "even: pool (equal shares) is first, with 0 more within the intervals; the cost is even, equal shares \
              of tiles differ by 0 %."
         );
+        assert_eq!(line("INTERRUPTED"), "INTERRUPTED before it was measured: later.toml.");
         // 9000 threads and a tile more than that: the first range is the dear tile alone, 3/4 of all.
         assert_eq!(
             line("corner:"),
@@ -257,6 +265,7 @@ mod tests {
         let value: serde_json::Value = serde_json::from_str(&json).expect("JSON");
         assert_eq!(value["schema"], 1);
         assert_eq!(value["comparisons"][1]["scene"], "corner.toml");
+        assert_eq!(value["not_measured"], serde_json::json!(["later.toml"]));
         let csv = with_scenes(|scenes| scenes.csv());
         assert_eq!(csv.lines().count(), 1 + 2 * 5);
     }
@@ -273,7 +282,7 @@ mod tests {
         assert_eq!(lines[6], "| pool | 9000 | **1.95 [1.91, 2.01]** | 0.90 [0.85, 0.95] |");
         let sentences: Vec<&str> = lines.iter().filter_map(|line| line.strip_prefix("- ")).collect();
         assert!(
-            sentences.len() == 2 && sentences.iter().all(|sentence| text.contains(sentence)),
+            sentences.len() == 3 && sentences.iter().all(|sentence| text.contains(sentence)),
             "{markdown}"
         );
         assert_eq!(markdown.matches("| pool | 9000 | 1026 |").count(), 2, "{markdown}");

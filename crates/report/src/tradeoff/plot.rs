@@ -95,7 +95,7 @@ fn draw_panel(
             )?
             .label(format!("importance, bounces: {depth}"))
             .legend(move |(x, y)| TriangleMarker::new((x + 8, y), MARKER + 2, color.filled()));
-        // With all bounces only.
+        // There with all bounces only: no legend for nothing.
         let mut adaptive = series(Sampling::Lattice, true).peekable();
         if adaptive.peek().is_some() {
             chart
