@@ -4,7 +4,7 @@ use crate::options::{PrecisionOption, SceneOptions, SwitchOption};
 use rayweave_core::image::ImageError;
 use rayweave_core::precision::Demand;
 use rayweave_core::scene::RenderSettings;
-use rayweave_core::{Arithmetic, Execution, Image, Precision, Scene, Work, tracer};
+use rayweave_core::{Arithmetic, Execution, Image, Precision, Sampling, Scene, Work, tracer};
 use rayweave_scene_file::{self as scene_file, SceneFile};
 use std::path::Path;
 
@@ -60,7 +60,13 @@ impl Input {
         let (width, height) = options.size.unwrap_or((file.image.width, file.image.height));
         scene.render.antialiasing = options.antialiasing.unwrap_or(scene.render.antialiasing);
         scene.render.sampling = options.sampling.into();
-        scene.render.adaptive = options.adaptive == SwitchOption::On;
+        let adaptive = options.adaptive == SwitchOption::On;
+        if adaptive && scene.render.sampling != Sampling::Lattice {
+            return Err(
+                "--adaptive on: it interpolates the samples of a lattice: take --sampling lattice".to_owned()
+            );
+        }
+        scene.render.adaptive = adaptive && scene.render.has_lattice();
         let demand = Demand::of(&scene);
         let (precision, reason) = match options.precision {
             PrecisionOption::Auto => (demand.precision(), demand.to_string()),

@@ -162,6 +162,8 @@ fn requests_that_cannot_be_met_are_refused_before_any_work() {
         ("render --share-samples maybe", "both"),
         ("render --share-samples both", "only `compare`"),
         ("check --share-samples both --json a.json", "only `compare`"),
+        ("render --adaptive on --sampling importance", "take --sampling lattice"),
+        ("predict --strategy sequential", "name one that starts threads"),
         ("render -o a.jpg", ".png, .ppm or .exr"),
         ("render -o a", ".png, .ppm or .exr"),
         ("render -o missing/a.png", "no folder missing"),

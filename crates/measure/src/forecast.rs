@@ -206,7 +206,8 @@ fn find<'a>(comparison: &'a Comparison, strategy: &str, threads: usize) -> Optio
 /// For so many threads: that of the largest number measured that is not larger, and so of all threads here for any more.
 fn slowdown(slowdowns: &[(usize, Interval)], threads: usize) -> f64 {
     let known = slowdowns.iter().rfind(|(measured, _)| *measured <= threads);
-    known.map_or(1.0, |(_, slowdown)| slowdown.median)
+    // Company makes no thread faster: below 1 is chance.
+    known.map_or(1.0, |(_, slowdown)| slowdown.median.max(1.0))
 }
 
 #[cfg(test)]
@@ -222,6 +223,7 @@ mod tests {
             assert_eq!(slowdown(&slowdowns, threads), factor, "{threads} threads");
         }
         assert_eq!(slowdown(&[], 8), 1.0);
+        assert_eq!(slowdown(&[(2, at(0.9))], 8), 1.0);
     }
 
     #[test]

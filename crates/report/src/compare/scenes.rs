@@ -129,13 +129,17 @@ fn why(report: &Report<'_>, load: &Load) -> String {
         return format!("{}: nothing was measured.", name(report));
     };
     let threads = report.comparison.rows.iter().map(|row| row.threads).max().unwrap_or(1);
-    let others = report.comparison.rows.iter().filter(|row| row.role != Role::Control);
-    let as_good = others.filter(|row| speedup(row).is_some_and(|other| other.high >= won.low)).count() - 1;
+    let others = || report.comparison.rows.iter().filter(|row| row.role != Role::Control);
+    let as_good = others().filter(|row| speedup(row).is_some_and(|other| other.high >= won.low)).count() - 1;
+    let certain = others().filter(|row| speedup(row).is_some_and(|other| other.low > 1.0));
+    let certain: Vec<&str> = certain.map(|row| row.strategy).collect();
     let strategy = winner.strategy;
     let verdict = if winner.role == Role::Reference {
         format!("no strategy pays, {strategy} is first")
-    } else if won.low <= 1.0 {
+    } else if certain.is_empty() {
         format!("no strategy is faster than alone for certain, {strategy} comes first")
+    } else if won.low <= 1.0 {
+        format!("{strategy} comes first; faster than alone for certain: {}", certain.join(", "))
     } else {
         let dealing = dealing(winner.rule.dealing);
         format!("{strategy} ({dealing}) is first, with {as_good} more within the intervals")
@@ -178,6 +182,7 @@ mod tests {
     use super::super::Subject;
     use super::super::tests::{comparison, machine, noise, subject};
     use super::*;
+    use rayweave_measure::compare::Figures;
     use std::time::Duration;
 
     fn load(costs: &[u64]) -> Load {
@@ -257,6 +262,15 @@ mod tests {
         };
         let told = why(&report, &load(&[1, 1]));
         assert!(told.contains(": no strategy is faster than alone for certain, pool comes first;"), "{told}");
+
+        // Another is, though its median is lower.
+        let mut comparison = comparison.clone();
+        let queue = comparison.rows[2]
+            .figures
+            .map(|figures| Figures { speedup: Interval { median: 1.1, low: 1.05, high: 1.2 }, ..figures });
+        comparison.rows[3].figures = queue;
+        let told = why(&Report { comparison: &comparison, ..report }, &load(&[1, 1]));
+        assert!(told.contains(": pool comes first; faster than alone for certain: queue;"), "{told}");
     }
 
     #[test]

@@ -92,8 +92,9 @@ fn check(curve: &Curve, point: &Point) -> Option<[String; 5]> {
 fn basis(report: &Report<'_>) -> String {
     let forecast = report.forecast;
     let slowdowns = forecast.slowdowns.iter().map(|&(threads, slowdown)| {
+        let used = if slowdown.median < 1.0 { "by chance, 1 is used" } else { "used" };
         let slowdown = style::precise_interval(slowdown);
-        format!("{threads} threads that share nothing take {slowdown} times as long as one, each: used.")
+        format!("{threads} threads that share nothing take {slowdown} times as long as one, each: {used}.")
     });
     let reference =
         forecast.comparison.reference_ns().map(|ns| format!("the reference takes {:.2} ms.", ns / 1e6));
