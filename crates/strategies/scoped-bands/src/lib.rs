@@ -1,4 +1,4 @@
-//! `scoped-bands`: a scoped thread, or the caller's, for each of N bands of rows, and nothing else.
+//! `scoped-bands`: one scoped thread for each of N bands of rows, and nothing else.
 //!
 //! * **What it decides**: everything beforehand. The picture is cut into as many bands of whole rows
 //!   as there are threads, equal but for one row; a thread computes its band as one large tile.
