@@ -58,16 +58,16 @@ def build():
 
 
 def count(program, loop, words):
-    """The instructions between entering and leaving the loop: no start, no reading, no writing."""
+    """The instructions between entering and leaving the loop, without start, reading and writing; and the picture's digest."""
     scene, *options = words.split()
     if "/" not in scene:
         scene = SCENES / scene
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "callgrind"
-        run(["valgrind", "--tool=callgrind", "--demangle=no", f"--toggle-collect={loop}",
-             f"--callgrind-out-file={out}",
-             program, "render", scene, *options, "--strategy", "sequential", "--output", f"{folder}/picture.ppm"])
+        told = run(["valgrind", "--tool=callgrind", "--demangle=no", f"--toggle-collect={loop}",
+                    f"--callgrind-out-file={out}",
+                    program, "render", scene, *options, "--strategy", "sequential", "--output", f"{folder}/picture.ppm"])
         totals = re.search(r"^(?:summary|totals): (\d+)", out.read_text(), re.MULTILINE)
     if not totals or totals[1] == "0":
         raise Failure(f"callgrind counted nothing in {loop}")
-    return int(totals[1])
+    return int(totals[1]), re.search(r"digest (\w+)", told)[1]
