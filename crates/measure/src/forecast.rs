@@ -114,6 +114,9 @@ pub enum ForecastError {
     /// What a strategy says.
     #[error("{0}")]
     Strategy(String),
+    /// No strategy that starts threads.
+    #[error("there is nothing to predict of a strategy without threads: name one that starts threads")]
+    Nothing,
 }
 
 impl Question<'_> {
@@ -121,7 +124,7 @@ impl Question<'_> {
     ///
     /// # Errors
     ///
-    /// No picture of this size, or a strategy that fails though it could be prepared.
+    /// No picture of this size, no strategy that starts threads, or one that fails though it could be prepared.
     pub fn answer(&self, mut progress: impl FnMut(Stage, f64)) -> Result<Forecast, ForecastError> {
         let mut unavailable = Vec::new();
         let mut strategies = Vec::new();
@@ -130,6 +133,9 @@ impl Question<'_> {
                 Ok(_) => strategies.push(strategy),
                 Err(reason) => unavailable.push(reason),
             }
+        }
+        if strategies.is_empty() && unavailable.is_empty() {
+            return Err(ForecastError::Nothing);
         }
         let overheads =
             calibrate(self.reference, &strategies, self.available, |done| progress(Stage::Overheads, done))

@@ -162,6 +162,21 @@ mod tests {
         assert_eq!(received, [0, 1, 2, 3, 4]);
     }
 
+    /// Catches a caller that has a share: what it starts may wait behind it.
+    #[test]
+    fn the_caller_only_waits() {
+        let (caller, ran) = (thread::current().id(), Mutex::new(Vec::new()));
+        let note = |_: &Team, share: usize| {
+            let by_caller = thread::current().id() == caller;
+            ran.lock().unwrap_or_else(PoisonError::into_inner).push((share, by_caller));
+            Ok(())
+        };
+        run("test", 0..5, note).expect("the threads start");
+        let mut ran = ran.into_inner().expect("nobody panicked");
+        ran.sort_unstable();
+        assert!(ran.into_iter().eq((0..5).map(|share| (share, false))));
+    }
+
     #[test]
     fn threads_are_tried_out_together() {
         try_out("test", NonZeroUsize::new(20).expect("not 0")).expect("20 threads start");

@@ -95,14 +95,12 @@ pub fn run(scene: Option<&Path>, options: &Options) -> Result<Outcome, String> {
             return Ok(Outcome::Interrupted);
         }
     };
-    let machine = Machine::here();
     let first = &measured[0];
     let skipped = first.input.skipped_line().map(|line| line + "\n").unwrap_or_default();
     let left_out = left_out_line(&options.strategy);
     let below = format!("\n{}\n{skipped}{left_out}", first.input.arithmetic_line());
     if !options.scenes.is_empty() {
-        let reports: Vec<Report<'_>> =
-            measured.iter().map(|measured| measured.report(0, &machine, None)).collect();
+        let reports: Vec<Report<'_>> = measured.iter().map(|measured| measured.report(0, None)).collect();
         let loads: Vec<&Load> = measured.iter().filter_map(|measured| measured.load.as_ref()).collect();
         let not_measured = scenes[measured.len()..].iter().flatten().map(|path| path.display().to_string());
         let not_measured: Vec<String> = not_measured.collect();
@@ -110,18 +108,17 @@ pub fn run(scene: Option<&Path>, options: &Options) -> Result<Outcome, String> {
         print(&format!("{}\n{left_out}", all.table()))?;
         files.finish(&all.json(), &all.csv(), &all.markdown())?;
     } else if first.comparisons.len() == 2 {
-        let both =
-            BothReport { shared: first.report(0, &machine, None), unshared: first.report(1, &machine, None) };
+        let both = BothReport { shared: first.report(0, None), unshared: first.report(1, None) };
         print(&format!("{}{below}", both.table()))?;
         files.finish(&both.json(), &both.csv(), &both.markdown())?;
     } else {
-        let report = first.report(0, &machine, baseline.as_ref());
+        let report = first.report(0, baseline.as_ref());
         print(&format!("{}{below}", report.table()))?;
         files.finish(&report.json(), &report.csv(), &report.markdown())?;
     }
-    let mut comparisons = measured.iter().flat_map(|measured| &measured.comparisons);
-    let interrupted = measured.len() < scenes.len() || measured.iter().any(Measured::interrupted);
-    let hold = comparisons.all(Comparison::holds);
+    let comparisons = || measured.iter().flat_map(|measured| &measured.comparisons);
+    let interrupted = measured.len() < scenes.len() || comparisons().any(|comparison| comparison.interrupted);
+    let hold = comparisons().all(Comparison::holds);
     Ok(match (hold, interrupted) {
         (false, _) => Outcome::Failed,
         (true, true) => Outcome::Interrupted,
@@ -194,19 +191,16 @@ struct Measured {
     input: Input,
     subjects: Vec<Subject>,
     comparisons: Vec<Comparison>,
+    machine: Machine,
     noise: Noise,
     /// How the cost lies in the picture, if there are other scenes.
     load: Option<Load>,
 }
 
 impl Measured {
-    fn report<'a>(&'a self, way: usize, machine: &'a Machine, baseline: Option<&'a Baseline>) -> Report<'a> {
+    fn report<'a>(&'a self, way: usize, baseline: Option<&'a Baseline>) -> Report<'a> {
         let (subject, comparison) = (&self.subjects[way], &self.comparisons[way]);
-        Report { subject, comparison, machine, noise: &self.noise, baseline }
-    }
-
-    fn interrupted(&self) -> bool {
-        self.comparisons.iter().any(|comparison| comparison.interrupted)
+        Report { subject, comparison, machine: &self.machine, noise: &self.noise, baseline }
     }
 }
 
@@ -260,11 +254,10 @@ fn measure_all(
 ) -> Result<Vec<Measured>, Unmeasured> {
     let (mut all, interrupt) = (Vec::new(), Interrupt::watch());
     for (scene, input) in scenes.iter().zip(inputs) {
+        if !all.is_empty() && interrupt.happened() {
+            break;
+        }
         match measure(scene.as_deref(), input, options, scenes.len(), &interrupt) {
-            Ok(measured) if measured.interrupted() => {
-                all.push(measured);
-                break;
-            }
             Ok(measured) => all.push(measured),
             // What was measured before is worth showing.
             Err(Unmeasured::Interrupted(_)) if !all.is_empty() => break,
@@ -292,7 +285,7 @@ fn measure(
     let load = (!options.scenes.is_empty()).then(|| load_of(&input, tile)).transpose()?;
     let reference = rayweave_registry::reference();
     let protocol = protocol(options, ways.len(), scenes);
-    let (comparisons, _, noise) = watched(|bar| {
+    let (comparisons, machine, noise) = watched(|bar| {
         protocol.run_together(reference, &entries(options), &mut executors, |progress| {
             // Drawn here and nowhere else: between the timed spans.
             bar.show(progress.fraction, format!("{}, threads: {}", progress.strategy, progress.threads));
@@ -303,7 +296,7 @@ fn measure(
         CompareError::Reference(_) => Unmeasured::Failed(error.to_string()),
     })?;
     let subjects = ways.iter().map(|&share_samples| subject(&input, share_samples, tile)).collect();
-    Ok(Measured { input, subjects, comparisons, noise, load })
+    Ok(Measured { input, subjects, comparisons, machine, noise, load })
 }
 
 /// How the cost lies in the picture.

@@ -6,7 +6,7 @@ use crate::output::{PendingFile, distinct_files};
 use crate::watched::watched;
 use crate::{Outcome, print};
 use clap::Args;
-use rayweave_core::{Strategy, ThreadsStart};
+use rayweave_core::Strategy;
 use rayweave_measure::Protocol;
 use rayweave_measure::forecast::{Question, Stage};
 use rayweave_report::forecast::Report;
@@ -46,12 +46,6 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let (width, height) = input.recordable_size()?;
     let tile = arguments.tile.of(width, height)?;
     let strategies = chosen(&arguments.strategy);
-    let starts_threads = |strategy: &&dyn Strategy| strategy.threads_start() != ThreadsStart::Never;
-    if !strategies.iter().any(starts_threads) {
-        return Err(
-            "--strategy: there is nothing to predict of sequential: name one that starts threads".to_owned()
-        );
-    }
     let mut threads = arguments.threads.concat();
     threads.sort_unstable();
     threads.dedup();
