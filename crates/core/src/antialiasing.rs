@@ -3,7 +3,7 @@
 
 use crate::image::Rgb;
 use crate::lane::Scalar;
-use crate::samples::Colors;
+use crate::samples::{Colors, Places};
 use crate::scene::RenderSettings;
 use crate::vector::Vector;
 
@@ -12,7 +12,7 @@ use crate::vector::Vector;
 pub(crate) struct Filter<S> {
     rows: Vec<Row<S>>,
     /// Right and down of all samples.
-    places: Vec<(S, S)>,
+    places: Places<S>,
     /// The unit of places: so many half steps are half a pixel.
     density: u32,
     /// Of each sample across a pixel, if the samples are on a square lattice.
@@ -48,8 +48,13 @@ impl<S: Scalar> Filter<S> {
     }
 
     fn of_rows(rows: Vec<Row<S>>, density: u32, lattice: Option<Vec<S>>) -> Self {
-        let places = rows.iter().flat_map(|row| row.samples.iter().map(|sample| (sample.right, row.down)));
-        Self { places: places.collect(), rows, density, lattice }
+        let mut places = Places::default();
+        for row in &rows {
+            for sample in &row.samples {
+                places.push(sample.right, row.down);
+            }
+        }
+        Self { places, rows, density, lattice }
     }
 
     /// Half steps from a pixel's edge to its centre.
@@ -64,7 +69,7 @@ impl<S: Scalar> Filter<S> {
     }
 
     /// Right and down of each sample, row by row.
-    pub(crate) fn places(&self) -> &[(S, S)] {
+    pub(crate) fn places(&self) -> &Places<S> {
         &self.places
     }
 
@@ -76,17 +81,17 @@ impl<S: Scalar> Filter<S> {
         if self.places.len() == 1 {
             return colors.get(first).to_array().map(S::to_f32);
         }
-        let mut i = first;
+        let mut samples = colors.range(first..first + self.places.len());
         let mut color = Vector::zero();
         for row in &self.rows {
             let mut row_color = Vector::zero();
-            for sample in &row.samples {
-                row_color = row_color + colors.get(i) * sample.weight;
-                i += 1;
+            // The weights first: where they end, no sample is taken.
+            for (sample, sample_color) in row.samples.iter().zip(&mut samples) {
+                row_color = row_color + sample_color * sample.weight;
             }
             color = color + row_color * row.weight;
         }
-        [color.x.to_f32(), color.y.to_f32(), color.z.to_f32()]
+        color.to_array().map(S::to_f32)
     }
 
     /// `(2 s + 1)^2` samples of a square lattice with `s` steps a pixel. Places are whole numbers of

@@ -46,14 +46,14 @@ mod tests {
         for density in [1, 2, 3, 5, 32] {
             let settings = settings(density, Sampling::Lattice);
             let filter = Filter::<f64>::new(&settings);
+            let samples: Vec<(f64, f64)> =
+                (0..filter.places().len()).map(|i| filter.places().load(i)).collect();
             for (width, height) in [(1, 1), (1, 4), (3, 1), (5, 3)] {
                 let mut places = BTreeSet::new();
                 for (x, y) in (0..width).flat_map(|x| (0..height).map(move |y| (x, y))) {
                     // Whole numbers of half steps, of which a pixel has `2 s`.
                     let centre = |pixel: u32| i64::from(2 * density * pixel);
-                    places.extend(
-                        filter.places().iter().map(|&(a, b)| (centre(x) + a as i64, centre(y) + b as i64)),
-                    );
+                    places.extend(samples.iter().map(|&(a, b)| (centre(x) + a as i64, centre(y) + b as i64)));
                 }
                 let found = primary_rays(width, height, &settings, true);
                 assert_eq!(found, Some(places.len() as u64), "{width} x {height} at {density}");

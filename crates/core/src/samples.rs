@@ -3,9 +3,11 @@
 use crate::lane::{Lane, Scalar};
 use crate::trace::Traced;
 use crate::vector::Vector;
+use std::iter::repeat_n;
+use std::ops::Range;
 
 /// Places in the picture, in half steps of the filter's from its middle.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Places<S> {
     right: Vec<S>,
     down: Vec<S>,
@@ -24,6 +26,21 @@ impl<S: Scalar> Places<S> {
     pub(crate) fn push(&mut self, right: S, down: S) {
         self.right.push(right);
         self.down.push(down);
+    }
+
+    /// The places that lie around each of `rights` at `down` as `samples` lie around a pixel's centre.
+    #[inline(always)]
+    pub(crate) fn push_around(&mut self, rights: &[S], down: S, samples: &Self) {
+        // Of one sample a pixel little else is done for it.
+        if let ([aside], [below]) = (&*samples.right, &*samples.down) {
+            self.right.extend(rights.iter().map(|&right| right + *aside));
+            self.down.extend(repeat_n(down + *below, rights.len()));
+            return;
+        }
+        for &right in rights {
+            self.right.extend(samples.right.iter().map(|&aside| right + aside));
+            self.down.extend(samples.down.iter().map(|&below| down + below));
+        }
     }
 
     /// The places from number `first` on: right and down. Lanes beyond the last repeat some of them.
@@ -63,6 +80,13 @@ impl<S: Scalar> Colors<S> {
     pub(crate) fn get(&self, i: usize) -> Vector<S> {
         let [red, green, blue] = &self.channels;
         Vector::new(red[i], green[i], blue[i])
+    }
+
+    /// The colours of these samples.
+    #[inline(always)]
+    pub(crate) fn range(&self, samples: Range<usize>) -> impl Iterator<Item = Vector<S>> {
+        let [red, green, blue] = self.channels.each_ref().map(|channel| &channel[samples.clone()]);
+        red.iter().zip(green).zip(blue).map(|((&red, &green), &blue)| Vector::new(red, green, blue))
     }
 
     #[inline(always)]

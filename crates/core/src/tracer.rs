@@ -15,6 +15,7 @@ use crate::trace::World;
 use crate::work::Work;
 use std::fmt;
 use std::marker::PhantomData;
+use std::ops::Range;
 
 /// The work of rendering `scene` into a picture of `width` x `height` pixels, up to the 65,535 of a scene file each: places in
 /// larger ones are not exact.
@@ -121,23 +122,31 @@ impl<L: Lane, F: Family> Tracer<L, F> {
         let area = tile.area();
         let rights: Vec<L::Scalar> = (0..area.width).map(|x| self.centre(area.x + x, self.width)).collect();
         let downs: Vec<L::Scalar> = (0..area.height).map(|y| self.centre(area.y + y, self.height)).collect();
-        let mut pixels = Vec::with_capacity(rights.len() * downs.len());
-        for_each_in_blocks(area.width, area.height, |x, y| pixels.push((x as usize, y as usize)));
         let samples = self.filter.places();
         let (mut places, mut colors) = (Places::default(), Colors::default());
-        let zero = L::Scalar::literal(0.0);
-        for pixels in pixels.chunks((BATCH / samples.len()).max(1)) {
-            places.clear();
-            for &(x, y) in pixels {
-                for &(aside, below) in samples {
-                    places.push(rights[x] + aside, downs[y] + below);
+        // Where the places belong: a row of pixels next to each other.
+        let mut runs = Vec::with_capacity(BATCH);
+        let mut finish = |places: &mut Places<L::Scalar>, runs: &mut Vec<(Range<usize>, usize)>| {
+            let zero = L::Scalar::literal(0.0);
+            self.trace(places, (zero, zero), &mut colors);
+            let mut first = 0;
+            for (columns, row) in runs.drain(..) {
+                for pixel in &mut tile.row_mut(row)[columns] {
+                    *pixel = self.filter.sum(&colors, first);
+                    first += samples.len();
                 }
             }
-            self.trace(&places, (zero, zero), &mut colors);
-            for (i, &(x, y)) in pixels.iter().enumerate() {
-                tile.row_mut(y)[x] = self.filter.sum(&colors, i * samples.len());
+            places.clear();
+        };
+        for_each_run(area.width, area.height, |columns, row| {
+            let (columns, row) = (columns.start as usize..columns.end as usize, row as usize);
+            places.push_around(&rights[columns.clone()], downs[row], samples);
+            runs.push((columns, row));
+            if places.len() + BLOCK as usize * samples.len() > BATCH {
+                finish(&mut places, &mut runs);
             }
-        }
+        });
+        finish(&mut places, &mut runs);
     }
 
     /// The lattice over the tile and around it, each point traced once.
@@ -155,9 +164,11 @@ impl<L: Lane, F: Family> Tracer<L, F> {
                 height = strip;
                 places.clear();
                 sums.start_strip(strip as usize);
-                for_each_in_blocks(columns, strip, |column, row| {
-                    places.push(half_steps(column.into()), half_steps(row.into()));
-                    sums.expect(column as usize, row as usize);
+                for_each_run(columns, strip, |columns, row| {
+                    for column in columns {
+                        places.push(half_steps(column.into()), half_steps(row.into()));
+                        sums.expect(column as usize, row as usize);
+                    }
                 });
             }
             self.trace(&places, (left, top + half_steps(first_row.into())), &mut colors);
@@ -199,15 +210,13 @@ const BATCH: usize = 1024;
 /// The side of a block of neighbours: of a packet of 16.
 const BLOCK: u32 = 4;
 
-/// Column and row of each place in a rectangle, block by block: those that follow each other are neighbours.
+/// Columns and row of each row of each block in a rectangle: those that follow each other are neighbours.
 #[inline(always)]
-fn for_each_in_blocks(width: u32, height: u32, mut place: impl FnMut(u32, u32)) {
+fn for_each_run(width: u32, height: u32, mut run: impl FnMut(Range<u32>, u32)) {
     for top in (0..height).step_by(BLOCK as usize) {
         for left in (0..width).step_by(BLOCK as usize) {
-            for y in top..height.min(top + BLOCK) {
-                for x in left..width.min(left + BLOCK) {
-                    place(x, y);
-                }
+            for row in top..height.min(top + BLOCK) {
+                run(left..width.min(left + BLOCK), row);
             }
         }
     }
