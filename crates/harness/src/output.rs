@@ -50,18 +50,23 @@ impl PendingFile {
 /// Whether no two of the files that are named are the same: neither two results, nor a result and what
 /// it is computed from, which would be lost.
 pub fn distinct_files(paths: &[&Option<PathBuf>]) -> Result<(), String> {
+    named_twice(paths).map_or(Ok(()), |path| {
+        Err(format!(
+            "{}: is named twice: nothing may be written over what is read or written too",
+            path.display()
+        ))
+    })
+}
+
+/// The first of these files that was named before.
+pub fn named_twice<'a>(paths: &[&'a Option<PathBuf>]) -> Option<&'a Path> {
     let mut seen: Vec<PathBuf> = Vec::new();
-    for path in paths.iter().filter_map(|path| path.as_deref()) {
+    paths.iter().filter_map(|path| path.as_deref()).find(|path| {
         let file = place(path);
-        if seen.contains(&file) {
-            return Err(format!(
-                "{}: is named twice: nothing may be written over what is read or written too",
-                path.display()
-            ));
-        }
+        let again = seen.contains(&file);
         seen.push(file);
-    }
-    Ok(())
+        again
+    })
 }
 
 /// The same for every way to name a file, whether it is there or not yet.

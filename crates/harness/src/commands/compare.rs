@@ -7,7 +7,7 @@ use crate::options::{
     SceneOptions, SharingOption, TileOption, all_threads, chosen, distinct, left_out_line, parse_percent,
     parse_seconds, parse_threads, strategy_parser,
 };
-use crate::output::{PendingFile, distinct_files};
+use crate::output::{PendingFile, distinct_files, named_twice};
 use crate::watched::watched;
 use crate::{Outcome, complain, print};
 use clap::Args;
@@ -149,7 +149,13 @@ fn scenes(scene: Option<&Path>, options: &Options) -> Result<Vec<Option<PathBuf>
             }
             Ok(files.into_iter().map(Some).collect())
         }
-        files => Ok(files.iter().cloned().map(Some).collect()),
+        files => {
+            let files: Vec<Option<PathBuf>> = files.iter().cloned().map(Some).collect();
+            match named_twice(&files.iter().collect::<Vec<_>>()) {
+                Some(file) => Err(format!("--scenes: {} is named twice: name it once", file.display())),
+                None => Ok(files),
+            }
+        }
     }
 }
 

@@ -115,12 +115,11 @@ impl Baseline {
         .collect()
     }
 
-    /// Whether its own times are to be doubted.
-    fn is_doubtful(&self) -> bool {
+    /// Why its own times are to be doubted, if they are.
+    fn doubt(&self) -> Option<&'static str> {
         let control = self.results.iter().find(|earlier| earlier.control);
         let control = control.and_then(|control| control.speedup).map(Interval::from);
-        self.noise.is_some_and(|noise| noise.disturbed)
-            || control.is_some_and(|control| !control.contains(1.0))
+        doubt(self.noise.is_some_and(|noise| noise.disturbed), control)
     }
 
     fn samples_of(&self, row: &Row) -> &[u64] {
@@ -129,6 +128,16 @@ impl Baseline {
             alike && !earlier.control && earlier.median_ns.is_some()
         };
         self.results.iter().find(of_row).map(|earlier| &earlier.samples_ns[..]).unwrap_or_default()
+    }
+}
+
+/// Why the times of a run are to be doubted, if they are: the machine, or its control, was off.
+fn doubt(disturbed: bool, control: Option<Interval>) -> Option<&'static str> {
+    match (disturbed, control.is_some_and(|control| !control.contains(1.0))) {
+        (true, true) => Some("was disturbed, and its control has no 1 in it"),
+        (true, false) => Some("was disturbed"),
+        (false, true) => Some("has no 1 in the interval of its control"),
+        (false, false) => None,
     }
 }
 
@@ -194,19 +203,11 @@ pub(super) fn text(baseline: &Baseline, report: &Report<'_>) -> String {
             .to_owned(),
         "Chance alone changes one row in twenty.".to_owned(),
     ];
-    if report.noise.is_disturbing()
-        || report.comparison.control().is_some_and(|control| !control.contains(1.0))
-    {
-        lines.push(
-            "This run was disturbed, or its control has no 1 in it: believe no verdict, measure again."
-                .to_owned(),
-        );
+    if let Some(doubt) = doubt(report.noise.is_disturbing(), report.comparison.control()) {
+        lines.push(format!("This run {doubt}: believe no verdict, measure again."));
     }
-    if baseline.is_doubtful() {
-        lines.push(
-            "The baseline was disturbed, or its control has no 1 in it: believe no verdict, measure a new baseline."
-                .to_owned(),
-        );
+    if let Some(doubt) = baseline.doubt() {
+        lines.push(format!("The baseline {doubt}: believe no verdict, measure a new baseline."));
     }
     if baseline.digest != report.comparison.digest.to_string() {
         lines.push("The baseline drew ANOTHER PICTURE: that may be all of the difference.".to_owned());
@@ -289,16 +290,21 @@ mod tests {
             let then = Baseline::parse(&with_report(comparison, of_then)).expect("a comparison");
             let now = slowed(1.0, 1.0);
             let text = with_report(&now, |report| Report { baseline: Some(&then), ..*report }.table());
-            text.contains(
-                "The baseline was disturbed, or its control has no 1 in it: believe no verdict, measure a new baseline.",
-            )
+            let doubts = text.lines().filter_map(|line| line.strip_prefix("The baseline "));
+            doubts.map(str::to_owned).collect::<Vec<_>>()
         };
         let mut drifted = slowed(1.0, 1.0);
         drifted.rows[1].figures.as_mut().expect("figures").speedup =
             Interval { median: 0.9, low: 0.8, high: 0.99 };
         let (quiet, busy) = (Some(Duration::ZERO), Some(Duration::from_secs(3600)));
-        assert!(!told(&slowed(1.0, 1.0), quiet), "a good baseline is doubted");
-        assert!(told(&drifted, quiet) && told(&slowed(1.0, 1.0), busy), "a doubtful baseline is believed");
+        assert!(told(&slowed(1.0, 1.0), quiet).is_empty(), "a good baseline is doubted");
+        for (then, foreign, why) in [
+            (&drifted, quiet, "has no 1 in the interval of its control"),
+            (&slowed(1.0, 1.0), busy, "was disturbed"),
+            (&drifted, busy, "was disturbed, and its control has no 1 in it"),
+        ] {
+            assert_eq!(told(then, foreign), [format!("{why}: believe no verdict, measure a new baseline.")]);
+        }
     }
 
     /// A setting that is changed, and how that is told.
