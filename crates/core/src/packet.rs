@@ -92,7 +92,8 @@ macro_rules! packet {
             }
             #[inline(always)]
             fn select_index(mask: Self, yes: $index, no: $index) -> $index {
-                mask.to_bits().select(yes, no)
+                // As numbers: `wide` selects integers byte by byte, for which AVX-512 has to turn a mask into bytes.
+                mask.select(Self::from_bits(yes), Self::from_bits(no)).to_bits()
             }
             #[inline(always)]
             fn first(mask: Self, numbers: [Self; 3]) -> Option<[$scalar; 3]> {
