@@ -81,13 +81,13 @@ impl<S: Scalar> Filter<S> {
         if self.places.len() == 1 {
             return colors.get(first).to_array().map(S::to_f32);
         }
-        let mut samples = colors.range(first..first + self.places.len());
+        let mut sample_colors = colors.range(first..first + self.places.len());
         let mut color = Vector::zero();
         for row in &self.rows {
             let mut row_color = Vector::zero();
-            // The weights first: where they end, no sample is taken.
-            for (sample, sample_color) in row.samples.iter().zip(&mut samples) {
-                row_color = row_color + sample_color * sample.weight;
+            // `zip` asks its left side first: at a row's end it takes no colour of the next row.
+            for (sample, color_there) in row.samples.iter().zip(&mut sample_colors) {
+                row_color = row_color + color_there * sample.weight;
             }
             color = color + row_color * row.weight;
         }

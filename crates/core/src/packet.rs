@@ -92,7 +92,7 @@ macro_rules! packet {
             }
             #[inline(always)]
             fn select_index(mask: Self, yes: $index, no: $index) -> $index {
-                // As numbers: `wide` selects integers byte by byte, for which AVX-512 has to turn a mask into bytes.
+                // As floats: `wide` selects integers byte by byte, and AVX-512 first turns the mask into one of bytes.
                 mask.select(Self::from_bits(yes), Self::from_bits(no)).to_bits()
             }
             #[inline(always)]

@@ -6,7 +6,8 @@ use crate::vector::Vector;
 use std::iter::repeat_n;
 use std::ops::Range;
 
-/// Places in the picture, in half steps of the filter's from its middle.
+/// Places, in half steps of the filter's: from the middle of the picture or, of a filter's samples, from the centre of a
+/// pixel.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Places<S> {
     right: Vec<S>,
@@ -28,10 +29,10 @@ impl<S: Scalar> Places<S> {
         self.down.push(down);
     }
 
-    /// The places that lie around each of `rights` at `down` as `samples` lie around a pixel's centre.
+    /// Adds, for each pixel's centre (one of `rights`, `down`) in turn, the places of all of its `samples` in their order.
     #[inline(always)]
     pub(crate) fn push_around(&mut self, rights: &[S], down: S, samples: &Self) {
-        // Of one sample a pixel little else is done for it.
+        // With one sample a pixel the general loop is a noticeable share of a rendering.
         if let ([aside], [below]) = (&*samples.right, &*samples.down) {
             self.right.extend(rights.iter().map(|&right| right + *aside));
             self.down.extend(repeat_n(down + *below, rights.len()));

@@ -123,30 +123,29 @@ impl<L: Lane, F: Family> Tracer<L, F> {
         let rights: Vec<L::Scalar> = (0..area.width).map(|x| self.centre(area.x + x, self.width)).collect();
         let downs: Vec<L::Scalar> = (0..area.height).map(|y| self.centre(area.y + y, self.height)).collect();
         let samples = self.filter.places();
-        let (mut places, mut colors) = (Places::default(), Colors::default());
-        // Where the places belong: a row of pixels next to each other.
-        let mut runs = Vec::with_capacity(BATCH);
-        let mut finish = |places: &mut Places<L::Scalar>, runs: &mut Vec<(Range<usize>, usize)>| {
-            let zero = L::Scalar::literal(0.0);
-            self.trace(places, (zero, zero), &mut colors);
-            let mut first = 0;
-            for (columns, row) in runs.drain(..) {
-                for pixel in &mut tile.row_mut(row)[columns] {
-                    *pixel = self.filter.sum(&colors, first);
-                    first += samples.len();
+        let side = (BATCH / samples.len()).clamp(1, BLOCK as usize);
+        let runs_a_batch = (BATCH / (side * samples.len())).max(1);
+        let (mut runs, mut places, mut colors) = (Vec::new(), Places::default(), Colors::default());
+        for top in (0..downs.len()).step_by(side) {
+            runs.clear();
+            let strip = top..downs.len().min(top + side);
+            for_each_run(rights.len(), strip, side, |columns, row| runs.push((columns, row)));
+            for batch in runs.chunks(runs_a_batch) {
+                places.clear();
+                for (columns, row) in batch {
+                    places.push_around(&rights[columns.clone()], downs[*row], samples);
+                }
+                let zero = L::Scalar::literal(0.0);
+                self.trace(&places, (zero, zero), &mut colors);
+                let mut first = 0;
+                for (columns, row) in batch {
+                    for pixel in &mut tile.row_mut(*row)[columns.clone()] {
+                        *pixel = self.filter.sum(&colors, first);
+                        first += samples.len();
+                    }
                 }
             }
-            places.clear();
-        };
-        for_each_run(area.width, area.height, |columns, row| {
-            let (columns, row) = (columns.start as usize..columns.end as usize, row as usize);
-            places.push_around(&rights[columns.clone()], downs[row], samples);
-            runs.push((columns, row));
-            if places.len() + BLOCK as usize * samples.len() > BATCH {
-                finish(&mut places, &mut runs);
-            }
-        });
-        finish(&mut places, &mut runs);
+        }
     }
 
     /// The lattice over the tile and around it, each point traced once.
@@ -164,10 +163,10 @@ impl<L: Lane, F: Family> Tracer<L, F> {
                 height = strip;
                 places.clear();
                 sums.start_strip(strip as usize);
-                for_each_run(columns, strip, |columns, row| {
-                    for column in columns {
-                        places.push(half_steps(column.into()), half_steps(row.into()));
-                        sums.expect(column as usize, row as usize);
+                for_each_run(columns as usize, 0..strip as usize, BLOCK as usize, |run, row| {
+                    for column in run {
+                        places.push(half_steps(column as i64), half_steps(row as i64));
+                        sums.expect(column, row);
                     }
                 });
             }
@@ -210,14 +209,13 @@ const BATCH: usize = 1024;
 /// The side of a block of neighbours: of a packet of 16.
 const BLOCK: u32 = 4;
 
-/// Columns and row of each row of each block in a rectangle: those that follow each other are neighbours.
+/// Shows `run` each row of each block of a strip, as its columns and its row: block by block, `side` columns wide, so that those
+/// that follow each other are neighbours.
 #[inline(always)]
-fn for_each_run(width: u32, height: u32, mut run: impl FnMut(Range<u32>, u32)) {
-    for top in (0..height).step_by(BLOCK as usize) {
-        for left in (0..width).step_by(BLOCK as usize) {
-            for row in top..height.min(top + BLOCK) {
-                run(left..width.min(left + BLOCK), row);
-            }
+fn for_each_run(width: usize, strip: Range<usize>, side: usize, mut run: impl FnMut(Range<usize>, usize)) {
+    for left in (0..width).step_by(side) {
+        for row in strip.clone() {
+            run(left..width.min(left + side), row);
         }
     }
 }

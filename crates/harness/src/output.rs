@@ -1,5 +1,6 @@
 //! Files that appear whole or not at all.
 
+use std::collections::HashSet;
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -50,7 +51,7 @@ impl PendingFile {
 /// Whether no two of the files that are named are the same: neither two results, nor a result and what
 /// it is computed from, which would be lost.
 pub fn distinct_files(paths: &[&Option<PathBuf>]) -> Result<(), String> {
-    named_twice(paths).map_or(Ok(()), |path| {
+    named_twice(paths.iter().filter_map(|path| path.as_deref())).map_or(Ok(()), |path| {
         Err(format!(
             "{}: is named twice: nothing may be written over what is read or written too",
             path.display()
@@ -59,14 +60,9 @@ pub fn distinct_files(paths: &[&Option<PathBuf>]) -> Result<(), String> {
 }
 
 /// The first of these files that was named before.
-pub fn named_twice<'a>(paths: &[&'a Option<PathBuf>]) -> Option<&'a Path> {
-    let mut seen: Vec<PathBuf> = Vec::new();
-    paths.iter().filter_map(|path| path.as_deref()).find(|path| {
-        let file = place(path);
-        let again = seen.contains(&file);
-        seen.push(file);
-        again
-    })
+pub fn named_twice<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Option<&'a Path> {
+    let mut seen = HashSet::new();
+    paths.into_iter().find(|path| !seen.insert(place(path)))
 }
 
 /// The same for every way to name a file, whether it is there or not yet.

@@ -294,7 +294,7 @@ fn scenes_stand_beside_each_other() {
         ("--scenes missing.toml", "missing.toml: cannot be read"),
         ("a.toml --scenes b.toml", "name all scenes there"),
         ("--scenes a.toml --share-samples both", "on or off"),
-        ("--scenes a.json", "named twice"),
+        ("--scenes a.json", "nothing may be written over"),
         ("--scenes a.toml,./a.toml", "./a.toml is named twice: name it once"),
     ] {
         let message = rayweave(folder.path(), &format!("{small} {arguments}")).expect_refusal();

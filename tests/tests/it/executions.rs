@@ -117,6 +117,20 @@ fn small_and_narrow_pictures() {
     }
 }
 
+/// Catches samples that are lost where those of one pixel, or of a few, are more than are traced together.
+#[test]
+fn many_samples_a_pixel() {
+    let mut scene = scenes::named("report");
+    for (antialiasing, size) in [(9, (5, 2)), (17, (2, 2)), (32, (1, 2))] {
+        for sampling in [Sampling::Lattice, Sampling::Importance] {
+            (scene.render.antialiasing, scene.render.sampling) = (antialiasing, sampling);
+            for arithmetic in &ARITHMETICS[..2] {
+                executions_agree(&scene, size, *arithmetic, &format!("{antialiasing}, {sampling}"));
+            }
+        }
+    }
+}
+
 /// Catches a test that compares an execution with itself.
 #[test]
 fn the_executions_are_all_there() {

@@ -149,13 +149,10 @@ fn scenes(scene: Option<&Path>, options: &Options) -> Result<Vec<Option<PathBuf>
             }
             Ok(files.into_iter().map(Some).collect())
         }
-        files => {
-            let files: Vec<Option<PathBuf>> = files.iter().cloned().map(Some).collect();
-            match named_twice(&files.iter().collect::<Vec<_>>()) {
-                Some(file) => Err(format!("--scenes: {} is named twice: name it once", file.display())),
-                None => Ok(files),
-            }
-        }
+        files => match named_twice(files.iter().map(PathBuf::as_path)) {
+            Some(file) => Err(format!("--scenes: {} is named twice: name it once", file.display())),
+            None => Ok(files.iter().cloned().map(Some).collect()),
+        },
     }
 }
 

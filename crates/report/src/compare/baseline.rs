@@ -116,7 +116,7 @@ impl Baseline {
     }
 
     /// Why its own times are to be doubted, if they are.
-    fn doubt(&self) -> Option<&'static str> {
+    fn doubt(&self) -> Option<String> {
         let control = self.results.iter().find(|earlier| earlier.control);
         let control = control.and_then(|control| control.speedup).map(Interval::from);
         doubt(self.noise.is_some_and(|noise| noise.disturbed), control)
@@ -131,14 +131,15 @@ impl Baseline {
     }
 }
 
-/// Why the times of a run are to be doubted, if they are: the machine, or its control, was off.
-fn doubt(disturbed: bool, control: Option<Interval>) -> Option<&'static str> {
-    match (disturbed, control.is_some_and(|control| !control.contains(1.0))) {
-        (true, true) => Some("was disturbed, and its control has no 1 in it"),
-        (true, false) => Some("was disturbed"),
-        (false, true) => Some("has no 1 in the interval of its control"),
-        (false, false) => None,
-    }
+/// Why the times of a run are to be doubted, if they are.
+fn doubt(disturbed: bool, control: Option<Interval>) -> Option<String> {
+    let off = control.is_some_and(|control| !control.contains(1.0));
+    let causes = [
+        disturbed.then_some("was disturbed"),
+        off.then_some("has a control whose interval does not contain 1"),
+    ];
+    let causes: Vec<&str> = causes.into_iter().flatten().collect();
+    (!causes.is_empty()).then(|| causes.join(" and "))
 }
 
 fn is_same(there: &Value, here: &Value) -> bool {
@@ -276,34 +277,45 @@ mod tests {
         assert!(text.contains("ANOTHER PICTURE"), "{text}");
     }
 
-    /// Catches a verdict that rests on an earlier run which was itself no good.
+    /// Catches a verdict that rests on a run which was itself no good.
     #[test]
-    fn a_doubtful_baseline_is_told() {
+    fn doubtful_runs_are_told() {
         use rayweave_measure::Noise;
         use std::time::Duration;
 
-        let told = |comparison: &Comparison, foreign: Option<Duration>| {
-            let of_then = |report: &Report<'_>| {
-                let noise = Noise { foreign, ..report.noise.clone() };
-                Report { noise: &noise, ..*report }.json()
+        // What is said of the run then and of the run now, each a comparison and whether it was disturbed.
+        let told = |then: (&Comparison, bool), now: (&Comparison, bool)| {
+            let with_noise = |(comparison, disturbed): (&Comparison, bool),
+                              show: &dyn Fn(&Report<'_>) -> String| {
+                let foreign = Some(Duration::from_secs(if disturbed { 3600 } else { 0 }));
+                with_report(comparison, |report| {
+                    let noise = Noise { foreign, ..report.noise.clone() };
+                    show(&Report { noise: &noise, ..*report })
+                })
             };
-            let then = Baseline::parse(&with_report(comparison, of_then)).expect("a comparison");
-            let now = slowed(1.0, 1.0);
-            let text = with_report(&now, |report| Report { baseline: Some(&then), ..*report }.table());
-            let doubts = text.lines().filter_map(|line| line.strip_prefix("The baseline "));
-            doubts.map(str::to_owned).collect::<Vec<_>>()
+            let then = Baseline::parse(&with_noise(then, &|report| report.json())).expect("a comparison");
+            let text = with_noise(now, &|report| Report { baseline: Some(&then), ..*report }.table());
+            text.lines()
+                .filter(|line| line.contains("believe no verdict"))
+                .map(str::to_owned)
+                .collect::<Vec<_>>()
         };
+        let good = slowed(1.0, 1.0);
         let mut drifted = slowed(1.0, 1.0);
         drifted.rows[1].figures.as_mut().expect("figures").speedup =
             Interval { median: 0.9, low: 0.8, high: 0.99 };
-        let (quiet, busy) = (Some(Duration::ZERO), Some(Duration::from_secs(3600)));
-        assert!(told(&slowed(1.0, 1.0), quiet).is_empty(), "a good baseline is doubted");
-        for (then, foreign, why) in [
-            (&drifted, quiet, "has no 1 in the interval of its control"),
-            (&slowed(1.0, 1.0), busy, "was disturbed"),
-            (&drifted, busy, "was disturbed, and its control has no 1 in it"),
+        assert!(told((&good, false), (&good, false)).is_empty(), "good runs are doubted");
+        for (run, why) in [
+            ((&drifted, false), "has a control whose interval does not contain 1"),
+            ((&good, true), "was disturbed"),
+            ((&drifted, true), "was disturbed and has a control whose interval does not contain 1"),
         ] {
-            assert_eq!(told(then, foreign), [format!("{why}: believe no verdict, measure a new baseline.")]);
+            let then = format!("The baseline {why}: believe no verdict, measure a new baseline.");
+            assert_eq!(told(run, (&good, false)), [then]);
+            assert_eq!(
+                told((&good, false), run),
+                [format!("This run {why}: believe no verdict, measure again.")]
+            );
         }
     }
 
