@@ -6,12 +6,11 @@
 use crate::lane::Scalar;
 use crate::lattice::LatticeSums;
 use crate::samples::{Colors, Places, half_steps};
-use crate::vector::Vector;
 
 /// The centres of a row of pixels and of one more on either side.
 #[derive(Clone, Debug)]
 struct Centres<S> {
-    colors: Vec<Vector<S>>,
+    colors: [Vec<S>; 3],
     trails: Vec<u32>,
 }
 
@@ -23,14 +22,14 @@ pub(crate) struct Bands<S> {
     count: usize,
     above: Option<Centres<S>>,
     below: Option<Centres<S>>,
-    /// Column and row, within the band, of the points that are traced, in their order.
-    traced: Vec<(usize, usize)>,
+    /// Of one channel, between neighbouring centres above and below.
+    mixed: [Vec<S>; 2],
 }
 
 impl<S: Scalar> Bands<S> {
     /// For a tile of `width` pixels, with `density` steps a pixel.
     pub(crate) fn new(density: usize, width: usize) -> Self {
-        Self { density, count: width + 2, above: None, below: None, traced: Vec::new() }
+        Self { density, count: width + 2, above: None, below: None, mixed: Default::default() }
     }
 
     /// The places of the next row of centres, on row 0.
@@ -44,62 +43,88 @@ impl<S: Scalar> Bands<S> {
     /// Takes over their colours.
     pub(crate) fn take_centres(&mut self, found: &Colors<S>) {
         let centres = Centres {
-            colors: (0..self.count).map(|i| found.get(i)).collect(),
+            colors: found.channels.each_ref().map(|channel| channel[..self.count].to_vec()),
             trails: found.trails[..self.count].to_vec(),
         };
         self.above = self.below.replace(centres);
     }
 
-    /// Interpolates what can be of the band that ends with the row of centres, its last row; `places` are those of all
-    /// other points, counted from its first row.
+    /// Interpolates the band that ends with the row of centres, its last row. `places` are those of the points where
+    /// that is wrong, counted from its first row: their colours are what `sums` expects.
     pub(crate) fn interpolate(&mut self, sums: &mut LatticeSums<'_, S>, places: &mut Places<S>) {
-        let (density, last) = (self.density, self.density - 1);
         places.clear();
-        self.traced.clear();
+        sums.start_strip(self.density);
+        self.interpolate_all(sums);
+        self.place_unlike(sums, places);
+    }
+
+    /// Every point, also between centres that look different: all together, that is quicker than to ask of each.
+    fn interpolate_all(&mut self, sums: &mut LatticeSums<'_, S>) {
+        let (density, last) = (self.density, self.density - 1);
         let Some(below) = &self.below else { return };
         let share = |steps: usize| S::from_f64(steps as f64 / density as f64);
-        for row in 0..density {
-            for column in 0..=density * (self.count - 1) {
-                let (centre, aside) = (column / density, column % density);
-                let right = centre + usize::from(aside > 0);
-                let known = if row == last {
-                    between(below, centre, right, share(aside))
-                } else {
-                    self.above.as_ref().and_then(|above| {
-                        let alike = above.trails[centre] == below.trails[centre];
-                        let top = between(above, centre, right, share(aside))?;
-                        let bottom = between(below, centre, right, share(aside))?;
-                        alike.then(|| mix(top, bottom, share(row + 1)))
-                    })
-                };
-                // Above the first row of centres the lattice has nothing.
-                let exists = row == last || self.above.is_some();
-                match known {
-                    Some(color) => sums.set(column, row, color),
-                    None if exists => {
-                        places.push(half_steps(column as i64), half_steps(row as i64));
-                        self.traced.push((column, row));
-                    }
-                    None => {}
+        let [top, bottom] = &mut self.mixed;
+        for (aside, channel) in (0..density).flat_map(|aside| (0..3).map(move |channel| (aside, channel))) {
+            let right = usize::from(aside > 0);
+            let mix_across = |centres: &Centres<S>, mixed: &mut Vec<S>| {
+                let colors = &centres.colors[channel];
+                let pairs = colors.iter().zip(&colors[right..]);
+                mixed.clear();
+                mixed.extend(pairs.map(|(&from, &to)| mix(from, to, share(aside))));
+            };
+            mix_across(below, bottom);
+            sums.points_mut(channel, aside, last)[..bottom.len()].copy_from_slice(bottom);
+            // Above the first row of centres the lattice has nothing.
+            let Some(above) = &self.above else { continue };
+            mix_across(above, top);
+            for row in 0..last {
+                let points = sums.points_mut(channel, aside, row).iter_mut();
+                for ((point, &top), &bottom) in points.zip(&*top).zip(&*bottom) {
+                    *point = mix(top, bottom, share(row + 1));
                 }
             }
         }
     }
 
-    /// Takes over the colours of the points that were traced.
-    pub(crate) fn take_traced(&self, found: &Colors<S>, sums: &mut LatticeSums<'_, S>) {
-        for (i, &(column, row)) in self.traced.iter().enumerate() {
-            sums.set(column, row, found.get(i));
+    /// Places the points between centres that look different, cell by cell, so that those that follow each other are
+    /// neighbours.
+    fn place_unlike(&self, sums: &mut LatticeSums<'_, S>, places: &mut Places<S>) {
+        let (density, last) = (self.density, self.density - 1);
+        let Some(below) = &self.below else { return };
+        for centre in 0..self.count {
+            let across =
+                |centres: &Centres<S>| centres.trails.get(centre + 1) == Some(&centres.trails[centre]);
+            let alike_below = across(below);
+            let alike_down =
+                self.above.as_ref().is_some_and(|above| above.trails[centre] == below.trails[centre]);
+            let alike_above = self.above.as_ref().is_some_and(across);
+            let alike = alike_above && alike_below && alike_down;
+            if alike {
+                continue;
+            }
+            let first_row = if self.above.is_some() { 0 } else { last };
+            let columns = if centre + 1 < self.count { density } else { 1 };
+            for (row, aside) in
+                (first_row..density).flat_map(|row| (0..columns).map(move |aside| (row, aside)))
+            {
+                let known = match (row == last, aside == 0) {
+                    (true, true) => true,
+                    (true, false) => alike_below,
+                    (false, true) => alike_down,
+                    (false, false) => alike,
+                };
+                if !known {
+                    let column = centre * density + aside;
+                    places.push(half_steps(column as i64), half_steps(row as i64));
+                    sums.expect(column, row);
+                }
+            }
         }
     }
 }
 
-/// The colour at `share` of the way between two centres that look alike; of a centre itself, its own.
-fn between<S: Scalar>(centres: &Centres<S>, left: usize, right: usize, share: S) -> Option<Vector<S>> {
-    let alike = centres.trails[left] == centres.trails[right];
-    alike.then(|| mix(centres.colors[left], centres.colors[right], share))
-}
-
-fn mix<S: Scalar>(from: Vector<S>, to: Vector<S>, share: S) -> Vector<S> {
+/// The number at `share` of the way from one to another.
+#[inline(always)]
+fn mix<S: Scalar>(from: S, to: S, share: S) -> S {
     from + (to - from) * share
 }

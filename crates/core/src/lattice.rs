@@ -4,7 +4,6 @@
 use crate::image::{Rgb, Tile};
 use crate::lane::Scalar;
 use crate::samples::Colors;
-use crate::vector::Vector;
 
 /// The rows of a lattice on their way into the pixels of a tile.
 ///
@@ -69,13 +68,11 @@ impl<'a, S: Scalar> LatticeSums<'a, S> {
         }
     }
 
-    /// Takes over the colour of one point of the strip.
+    /// Of one channel, the colours of the points in a row of the strip that are `aside` steps right of a pixel's first one.
     #[inline(always)]
-    pub(crate) fn set(&mut self, column: usize, row: usize, color: Vector<S>) {
-        let slot = self.slot(column, row);
-        for (kept, channel) in self.strip.iter_mut().zip(color.to_array()) {
-            kept[slot] = channel;
-        }
+    pub(crate) fn points_mut(&mut self, channel: usize, aside: usize, row: usize) -> &mut [S] {
+        let first = self.slot(aside, row);
+        &mut self.strip[channel][first..first + self.width + 2]
     }
 
     /// Adds the strip's row `row`, which is row `lattice_row` of the tile's lattice, to the rows of pixels that it

@@ -184,7 +184,6 @@ impl<L: Lane, F: Family> Tracer<L, F> {
         let (left, top) = self.corner(area);
         let (mut places, mut colors) = (Places::default(), Colors::default());
         let mut sums = LatticeSums::new(weights, density as usize, area.width as usize);
-        sums.start_strip(density as usize);
         let mut bands = Bands::new(density as usize, area.width as usize);
         for centres in 0..area.height + 2 {
             // The band ends at lattice row `last`; of the first one there is this row only.
@@ -195,7 +194,7 @@ impl<L: Lane, F: Family> Tracer<L, F> {
             bands.interpolate(&mut sums, &mut places);
             let first = last + 1 - i64::from(density);
             self.trace(&places, (left, top + half_steps(first)), &mut colors);
-            bands.take_traced(&colors, &mut sums);
+            sums.fill(&colors);
             for row in first.max(0)..=last {
                 sums.add_row((row - first) as usize, row as usize, tile);
             }

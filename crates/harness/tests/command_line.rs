@@ -172,6 +172,8 @@ fn requests_that_cannot_be_met_are_refused_before_any_work() {
         ("compare --csv folder.png", "it is a folder"),
         ("compare --time-limit 0", "1..=604800"),
         ("compare --time-limit soon", "1..=604800"),
+        ("explain --time-limit 0", "1..=604800"),
+        ("predict --time-limit 0", "1..=604800"),
         ("compare --precision-goal 0%", "0.001..=100"),
         ("compare --precision-goal much", "as in 1%"),
         ("compare --size 65535x65535", "limit"),

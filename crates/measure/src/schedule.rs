@@ -31,6 +31,12 @@ impl Default for Protocol {
 }
 
 impl Protocol {
+    /// The same, or with as many rounds as fit into `limit` if there is one.
+    #[must_use]
+    pub fn within(self, limit: Option<Duration>) -> Self {
+        limit.map_or(self, |budget| Self { max_rounds: usize::MAX, budget, ..self })
+    }
+
     /// The turns of `entries` entries: one warm-up round in the order of the entries, then the rounds.
     #[must_use]
     pub fn schedule(&self, entries: usize) -> Schedule {

@@ -1,7 +1,9 @@
 //! `rayweave explain`: why a strategy loses what it loses.
 
 use crate::input::Input;
-use crate::options::{SceneOptions, TileOption, all_threads, distinct, parse_threads, strategy_parser};
+use crate::options::{
+    SceneOptions, TileOption, all_threads, distinct, parse_seconds, parse_threads, strategy_parser,
+};
 use crate::output::{PendingFile, distinct_files};
 use crate::picture::Format;
 use crate::watched::watched;
@@ -28,6 +30,9 @@ pub struct Arguments {
     threads: Option<NonZeroUsize>,
     #[command(flatten)]
     tile: TileOption,
+    /// Begin no round after 6 that would end later than this [default: 20 for each strategy]
+    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
+    time_limit: Option<Duration>,
     /// Write the result as JSON
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -61,12 +66,13 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
         arguments.pictures.as_deref().map(|folder| picture_files(folder, &strategies)).transpose()?;
     let tile = arguments.tile.of(width, height)?;
     let work = input.work(width, height)?;
+    let protocol = Protocol { budget: PROTOCOL.budget * strategies.len() as u32, ..PROTOCOL };
     let experiment = Experiment {
         work: &*work,
         size: (width, height),
         tile,
         reference: rayweave_registry::reference(),
-        protocol: Protocol { budget: PROTOCOL.budget * strategies.len() as u32, ..PROTOCOL },
+        protocol: protocol.within(arguments.time_limit),
     };
     let threads = arguments.threads.unwrap_or_else(all_threads);
     // The bar is drawn between the timed spans.

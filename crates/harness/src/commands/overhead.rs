@@ -40,7 +40,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
         reference: rayweave_registry::reference(),
         strategies: &strategies,
         threads: arguments.threads.unwrap_or_else(all_threads),
-        protocol: Protocol { budget: arguments.time_limit.unwrap_or(PROTOCOL.budget), ..PROTOCOL },
+        protocol: PROTOCOL.within(arguments.time_limit),
     };
     let (study, machine, noise) =
         watched(|bar| overhead.run(|strategy, fraction| bar.show(fraction, strategy.to_owned())));

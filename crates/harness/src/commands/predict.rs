@@ -1,7 +1,9 @@
 //! `rayweave predict`: what more threads would make of a picture.
 
 use crate::input::Input;
-use crate::options::{SceneOptions, TileOption, all_threads, chosen, parse_thread_counts, strategy_parser};
+use crate::options::{
+    SceneOptions, TileOption, all_threads, chosen, parse_seconds, parse_thread_counts, strategy_parser,
+};
 use crate::output::{PendingFile, distinct_files};
 use crate::watched::watched;
 use crate::{Outcome, print};
@@ -12,6 +14,7 @@ use rayweave_measure::forecast::{Question, Stage};
 use rayweave_report::forecast::Report;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
+use std::time::Duration;
 
 #[derive(Args)]
 pub struct Arguments {
@@ -25,6 +28,10 @@ pub struct Arguments {
     threads: Vec<Counts>,
     #[command(flatten)]
     tile: TileOption,
+    /// Begin no round after 8 that would end later than this; without this option 40 rounds are enough, or
+    /// two and a half minutes
+    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
+    time_limit: Option<Duration>,
     /// Write the result as JSON
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -58,7 +65,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
         strategies: &strategies,
         threads: &threads,
         available: all_threads(),
-        protocol: Protocol::default(),
+        protocol: Protocol::default().within(arguments.time_limit),
     };
     let message = |stage| match stage {
         Stage::Overheads => "overheads of threads",

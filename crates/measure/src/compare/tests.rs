@@ -249,6 +249,15 @@ fn the_least_number_of_rounds_is_enough_for_an_interval() {
     assert_eq!((min_rounds, max_rounds, budget, goal), (8, 40, Duration::from_secs(150), None));
 }
 
+/// Catches a time limit that ends after the rounds that are enough without one.
+#[test]
+fn a_time_limit_is_the_only_limit() {
+    assert_eq!(Protocol::default().within(None), Protocol::default());
+    let limited = Protocol::default().within(Some(Duration::from_secs(7)));
+    assert_eq!((limited.min_rounds, limited.max_rounds), (8, usize::MAX));
+    assert_eq!(limited.budget, Duration::from_secs(7));
+}
+
 #[test]
 fn rounds_end_with_the_budget_but_not_before_the_least_number() {
     let rounds = |protocol| run(protocol, &mut fake(|_, _| right(10))).rounds;
