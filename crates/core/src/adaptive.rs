@@ -22,7 +22,7 @@ pub(crate) struct Bands<S> {
     count: usize,
     above: Option<Centres<S>>,
     below: Option<Centres<S>>,
-    /// Of one channel, between neighbouring centres above and below.
+    /// For a moment: the colours in one channel so many steps right of each centre, above and below.
     mixed: [Vec<S>; 2],
 }
 
@@ -40,7 +40,7 @@ impl<S: Scalar> Bands<S> {
         }
     }
 
-    /// Takes over their colours.
+    /// Takes over their colours and trails.
     pub(crate) fn take_centres(&mut self, found: &Colors<S>) {
         let centres = Centres {
             colors: found.channels.each_ref().map(|channel| channel[..self.count].to_vec()),
@@ -49,8 +49,8 @@ impl<S: Scalar> Bands<S> {
         self.above = self.below.replace(centres);
     }
 
-    /// Interpolates the band that ends with the row of centres, its last row. `places` are those of the points where
-    /// that is wrong, counted from its first row: their colours are what `sums` expects.
+    /// Interpolates the band that ends with the row of centres, its last row. `places` are those of the points whose
+    /// centres do not look alike, counted from its first row: their colours are what `sums` expects.
     pub(crate) fn interpolate(&mut self, sums: &mut LatticeSums<'_, S>, places: &mut Places<S>) {
         places.clear();
         sums.start_strip(self.density);
@@ -58,19 +58,19 @@ impl<S: Scalar> Bands<S> {
         self.place_unlike(sums, places);
     }
 
-    /// Every point, also between centres that look different: all together, that is quicker than to ask of each.
+    /// Every point, also where the centres do not look alike: all together, that is quicker than to ask of each.
     fn interpolate_all(&mut self, sums: &mut LatticeSums<'_, S>) {
         let (density, last) = (self.density, self.density - 1);
         let Some(below) = &self.below else { return };
         let share = |steps: usize| S::from_f64(steps as f64 / density as f64);
         let [top, bottom] = &mut self.mixed;
         for (aside, channel) in (0..density).flat_map(|aside| (0..3).map(move |channel| (aside, channel))) {
-            let right = usize::from(aside > 0);
+            let (right, across) = (usize::from(aside > 0), share(aside));
             let mix_across = |centres: &Centres<S>, mixed: &mut Vec<S>| {
                 let colors = &centres.colors[channel];
                 let pairs = colors.iter().zip(&colors[right..]);
                 mixed.clear();
-                mixed.extend(pairs.map(|(&from, &to)| mix(from, to, share(aside))));
+                mixed.extend(pairs.map(|(&from, &to)| mix(from, to, across)));
             };
             mix_across(below, bottom);
             sums.points_mut(channel, aside, last)[..bottom.len()].copy_from_slice(bottom);
@@ -78,16 +78,17 @@ impl<S: Scalar> Bands<S> {
             let Some(above) = &self.above else { continue };
             mix_across(above, top);
             for row in 0..last {
+                let down = share(row + 1);
                 let points = sums.points_mut(channel, aside, row).iter_mut();
                 for ((point, &top), &bottom) in points.zip(&*top).zip(&*bottom) {
-                    *point = mix(top, bottom, share(row + 1));
+                    *point = mix(top, bottom, down);
                 }
             }
         }
     }
 
-    /// Places the points between centres that look different, cell by cell, so that those that follow each other are
-    /// neighbours.
+    /// Places the points whose centres do not look alike, cell by cell, each from a centre to the next one right and the next
+    /// one down: so those that follow each other are neighbours.
     fn place_unlike(&self, sums: &mut LatticeSums<'_, S>, places: &mut Places<S>) {
         let (density, last) = (self.density, self.density - 1);
         let Some(below) = &self.below else { return };

@@ -48,6 +48,7 @@ impl<'a, S: Scalar> LatticeSums<'a, S> {
     }
 
     /// Makes ready for strips of `rows` rows: the places of their points are [expected](Self::expect) next.
+    /// Colours of the last strip stay until they are overwritten.
     pub(crate) fn start_strip(&mut self, rows: usize) {
         self.slots.clear();
         let size = rows * self.density * (self.width + 2);
@@ -59,8 +60,9 @@ impl<'a, S: Scalar> LatticeSums<'a, S> {
         self.slots.push(self.slot(column, row) as u32);
     }
 
-    /// Takes over the colours of a strip.
+    /// Takes over the colours of the expected points, in their order; what follows them is of lanes without a point.
     pub(crate) fn fill(&mut self, colors: &Colors<S>) {
+        debug_assert!(colors.channels[0].len() >= self.slots.len(), "a point without a colour");
         for (kept, channel) in self.strip.iter_mut().zip(&colors.channels) {
             for (&slot, &color) in self.slots.iter().zip(channel) {
                 kept[slot as usize] = color;
@@ -68,7 +70,8 @@ impl<'a, S: Scalar> LatticeSums<'a, S> {
         }
     }
 
-    /// Of one channel, the colours of the points in a row of the strip that are `aside` steps right of a pixel's first one.
+    /// Of one channel and a row of the strip, the colours of the points `aside` steps right of each pixel centre, from that left
+    /// of the tile to that right of it: of the latter only with none, the lattice ends there. `aside` is below the density.
     #[inline(always)]
     pub(crate) fn points_mut(&mut self, channel: usize, aside: usize, row: usize) -> &mut [S] {
         let first = self.slot(aside, row);

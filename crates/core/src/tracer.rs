@@ -123,10 +123,12 @@ impl<L: Lane, F: Family> Tracer<L, F> {
         let rights: Vec<L::Scalar> = (0..area.width).map(|x| self.centre(area.x + x, self.width)).collect();
         let downs: Vec<L::Scalar> = (0..area.height).map(|y| self.centre(area.y + y, self.height)).collect();
         let samples = self.filter.places();
-        let side = (BATCH / samples.len()).clamp(1, BLOCK as usize);
+        // The widest block of which a row's samples fit into a batch; a pixel if not even these do.
+        let side = (BATCH / samples.len()).clamp(1, BLOCK);
         let runs_a_batch = (BATCH / (side * samples.len())).max(1);
         let (mut runs, mut places, mut colors) = (Vec::new(), Places::default(), Colors::default());
         for top in (0..downs.len()).step_by(side) {
+            // Of a narrow tile the strips, and so the packets, are not full: to put several together costs all others more.
             runs.clear();
             let strip = top..downs.len().min(top + side);
             for_each_run(rights.len(), strip, side, |columns, row| runs.push((columns, row)));
@@ -151,29 +153,30 @@ impl<L: Lane, F: Family> Tracer<L, F> {
     /// The lattice over the tile and around it, each point traced once.
     fn render_shared(&self, tile: &mut Tile<'_>, weights: &[L::Scalar]) {
         let (area, density) = (tile.area(), self.filter.density());
-        let [columns, rows] = [area.width, area.height].map(|pixels| lattice_points(pixels, density) as u32);
+        let [columns, rows] =
+            [area.width, area.height].map(|pixels| lattice_points(pixels, density) as usize);
         let (left, top) = self.corner(area);
         let (mut places, mut colors) = (Places::default(), Colors::default());
         let mut sums = LatticeSums::new(weights, density as usize, area.width as usize);
         let mut height = 0;
-        for first_row in (0..rows).step_by(BLOCK as usize) {
+        for first_row in (0..rows).step_by(BLOCK) {
             // All strips of a tile have the same places but the last, which may be lower.
             let strip = BLOCK.min(rows - first_row);
             if strip != height {
                 height = strip;
                 places.clear();
-                sums.start_strip(strip as usize);
-                for_each_run(columns as usize, 0..strip as usize, BLOCK as usize, |run, row| {
+                sums.start_strip(strip);
+                for_each_run(columns, 0..strip, BLOCK, |run, row| {
                     for column in run {
                         places.push(half_steps(column as i64), half_steps(row as i64));
                         sums.expect(column, row);
                     }
                 });
             }
-            self.trace(&places, (left, top + half_steps(first_row.into())), &mut colors);
+            self.trace(&places, (left, top + half_steps(first_row as i64)), &mut colors);
             sums.fill(&colors);
             for row in first_row..first_row + strip {
-                sums.add_row((row - first_row) as usize, row as usize, tile);
+                sums.add_row(row - first_row, row, tile);
             }
         }
     }
@@ -205,16 +208,16 @@ impl<L: Lane, F: Family> Tracer<L, F> {
 /// Samples that are traced together: enough to fill packets, few enough to stay in the cache.
 const BATCH: usize = 1024;
 
-/// The side of a block of neighbours: of a packet of 16.
-const BLOCK: u32 = 4;
+/// The largest side of a block of neighbours: that of a packet of 16.
+const BLOCK: usize = 4;
 
-/// Shows `run` each row of each block of a strip, as its columns and its row: block by block, `side` columns wide, so that those
-/// that follow each other are neighbours.
+/// Calls `show` with the columns and the row of each row of each block of a strip: block by block, `side` columns wide, so that
+/// those that follow each other are neighbours.
 #[inline(always)]
-fn for_each_run(width: usize, strip: Range<usize>, side: usize, mut run: impl FnMut(Range<usize>, usize)) {
+fn for_each_run(width: usize, strip: Range<usize>, side: usize, mut show: impl FnMut(Range<usize>, usize)) {
     for left in (0..width).step_by(side) {
         for row in strip.clone() {
-            run(left..width.min(left + side), row);
+            show(left..width.min(left + side), row);
         }
     }
 }

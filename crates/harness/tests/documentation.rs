@@ -50,7 +50,7 @@ fn small(arguments: &str) -> String {
     if takes_size && !small.contains("--size") {
         small += " --size 24x18";
     }
-    if ["compare", "overhead", "-"].iter().any(|word| arguments.starts_with(word)) {
+    if ["compare", "explain", "overhead", "predict", "-"].iter().any(|word| arguments.starts_with(word)) {
         small += " --time-limit 1";
     }
     small

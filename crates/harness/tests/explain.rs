@@ -13,7 +13,7 @@ fn explain_writes_what_it_measured_of_every_strategy() {
     let folder = folder();
     let names: Vec<&str> = rayweave_registry::available().iter().map(|strategy| strategy.name()).collect();
     let arguments = format!(
-        "explain --size 40x30 --threads 2 --tile 8 --strategy {} --json a.json --trace a.trace.json --pictures drawn",
+        "explain --size 40x30 --threads 2 --tile 8 --time-limit 2 --strategy {} --json a.json --trace a.trace.json --pictures drawn",
         names.join(",")
     );
     let text = rayweave(folder.path(), &arguments).expect_success();

@@ -50,7 +50,7 @@ fn predict_goes_beyond_the_threads_that_are_here() {
     let folder = folder();
     let name = rayweave_registry::recommended().name();
     let arguments = format!(
-        "predict {} --size 40x30 --tile 4 --antialiasing 0 --threads 1..8,100 --strategy {name} --json a.json \
+        "predict {} --size 40x30 --tile 4 --time-limit 2 --antialiasing 0 --threads 1..8,100 --strategy {name} --json a.json \
          --svg a.svg",
         scene("room.toml")
     );
@@ -88,8 +88,11 @@ fn predict_goes_beyond_the_threads_that_are_here() {
 #[test]
 fn predict_takes_every_strategy_that_starts_threads() {
     let folder = folder();
-    rayweave(folder.path(), "predict --size 12x9 --antialiasing 1 --threads 1,3 --json a.json")
-        .expect_success();
+    rayweave(
+        folder.path(),
+        "predict --size 12x9 --time-limit 2 --antialiasing 1 --threads 1,3 --json a.json",
+    )
+    .expect_success();
     let object = json(&folder.path().join("a.json"));
     let parallel = rayweave_registry::STRATEGIES.iter().filter(|s| s.threads_start() != ThreadsStart::Never);
     let unavailable = object["unavailable"].as_array().expect("a list").len();

@@ -140,6 +140,10 @@ impl Overhead<'_> {
         while let Some(turn) = schedule.next(begin.elapsed()) {
             let strategy = strategies[turn.entry];
             progress(strategy.name(), turn.fraction);
+            // Without the reference there is nothing to say of the others.
+            if samples[0].is_err() {
+                break;
+            }
             let so_far = &mut samples[turn.entry];
             let measured = if so_far.is_ok() { self.turn(strategy, &mut sheets) } else { continue };
             match (so_far.as_mut(), measured) {

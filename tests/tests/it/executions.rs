@@ -106,9 +106,11 @@ fn adaptive_samples_are_near_the_lattice() {
 /// Catches the same in pictures that are smaller than a packet, a block, or a row of one.
 #[test]
 fn small_and_narrow_pictures() {
-    for antialiasing in [0, 1, 2, 3] {
+    for (antialiasing, adaptive) in
+        [(0, false), (1, false), (2, false), (3, false), (1, true), (2, true), (3, true)]
+    {
         let mut scene = scenes::named("room");
-        scene.render.antialiasing = antialiasing;
+        (scene.render.antialiasing, scene.render.adaptive) = (antialiasing, adaptive);
         for size in [(1, 1), (2, 1), (1, 2), (3, 5), (1, 40), (40, 1)] {
             for arithmetic in &ARITHMETICS[..2] {
                 executions_agree(&scene, size, *arithmetic, &format!("{size:?} with {antialiasing}"));
@@ -122,10 +124,14 @@ fn small_and_narrow_pictures() {
 fn many_samples_a_pixel() {
     let mut scene = scenes::named("report");
     for (antialiasing, size) in [(9, (5, 2)), (17, (2, 2)), (32, (1, 2))] {
-        for sampling in [Sampling::Lattice, Sampling::Importance] {
+        for (sampling, adaptive) in
+            [(Sampling::Lattice, false), (Sampling::Importance, false), (Sampling::Lattice, true)]
+        {
             (scene.render.antialiasing, scene.render.sampling) = (antialiasing, sampling);
+            scene.render.adaptive = adaptive;
             for arithmetic in &ARITHMETICS[..2] {
-                executions_agree(&scene, size, *arithmetic, &format!("{antialiasing}, {sampling}"));
+                let name = format!("{antialiasing}, {sampling}, adaptive: {adaptive}");
+                executions_agree(&scene, size, *arithmetic, &name);
             }
         }
     }

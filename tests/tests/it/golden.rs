@@ -34,6 +34,10 @@ const TEXTBOOK: [(&str, [u64; 2]); 2] = [
 /// The report's scene with samples by importance, a density of 2: in `f32` and in `f64`.
 const IMPORTANCE: [u64; 2] = [0x77b541ce95c7c347, 0x3481aa9114591d04];
 
+/// The same of the room and the report's scene with 4, adaptive.
+const ADAPTIVE: [[u64; 2]; 2] =
+    [[0x53e801981c82d28d, 0xa2586d5a643b019c], [0x45ee3a9b4b7d8a47, 0x2d1ea4d9a4ec2e5a]];
+
 fn scene(name: &str) -> Scene {
     match name.strip_prefix("random ") {
         Some(seed) => random_scene(seed.parse().expect("a number")),
@@ -94,6 +98,20 @@ fn importance_pictures_stay_what_they_are() {
         u64::from_str_radix(&digest.short(), 16).expect("16 hexadecimal digits")
     });
     assert!(found == IMPORTANCE, "the pictures are now {found:#018x?}");
+}
+
+/// Catches points that are interpolated by another rule, or elsewhere.
+#[test]
+fn adaptive_pictures_stay_what_they_are() {
+    let found = ["room", "report"].map(|name| {
+        let mut scene = scene(name);
+        (scene.render.antialiasing, scene.render.adaptive) = (4, true);
+        [Precision::F32, Precision::F64].map(|precision| {
+            let digest = picture::of_scene(&scene, WIDTH, HEIGHT, precision).digest();
+            u64::from_str_radix(&digest.short(), 16).expect("16 hexadecimal digits")
+        })
+    });
+    assert!(found == ADAPTIVE, "the pictures are now {found:#018x?}");
 }
 
 /// Catches a table that cannot fail: a digest that is the same for two pictures, because the scene

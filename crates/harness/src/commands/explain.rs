@@ -30,7 +30,8 @@ pub struct Arguments {
     threads: Option<NonZeroUsize>,
     #[command(flatten)]
     tile: TileOption,
-    /// Begin no round after 6 that would end later than this [default: 20 for each strategy]
+    /// Begin no round after 6 that would end later than this, all strategies together; without this option 200 rounds are
+    /// enough, or 20 seconds a strategy
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
     time_limit: Option<Duration>,
     /// Write the result as JSON

@@ -28,8 +28,8 @@ pub struct Arguments {
     threads: Vec<Counts>,
     #[command(flatten)]
     tile: TileOption,
-    /// Begin no round after 8 that would end later than this; without this option 40 rounds are enough, or
-    /// two and a half minutes
+    /// Begin no round after 8 that would end later than this, the overheads of threads not counted; without this option 40
+    /// rounds are enough, or two and a half minutes
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
     time_limit: Option<Duration>,
     /// Write the result as JSON

@@ -116,12 +116,17 @@ fn gaps(row: &Row) -> String {
     )
 }
 
-/// The largest cause, and what helps.
+/// The largest cause, and what helps; unless chance is larger.
 fn advice(row: &Row) -> String {
     let cause = row.losses.largest();
     let share = row.losses.to(cause) / row.thread_time_ns();
     if share < NOTABLE {
         return "No cause takes 1 % of the thread-time.".to_owned();
+    }
+    if (row.lost_ns - row.losses.total_ns()).abs() > row.losses.to(cause) {
+        return "No verdict: recorded and plain renderings differ by more than any cause takes. Measure longer \
+                (--time-limit), or on a quieter machine."
+            .to_owned();
     }
     let help = match cause {
         Cause::Redundant => {

@@ -110,6 +110,23 @@ fn text_puts_a_figure_to_each_cause_and_adds_them_up() {
     );
 }
 
+/// Catches a culprit that is named by chance: what is not explained is more than it takes, above or below.
+#[test]
+fn what_chance_outweighs_is_no_verdict() {
+    let (machine, noise) = (Machine::here(), noise());
+    for (lost_ms, verdict) in [(28.7, true), (28.9, false), (8.9, true), (8.7, false)] {
+        let mut explanation = explanation();
+        // Its causes sum up to 18.8 ms, and the largest takes 10.
+        explanation.rows[0].lost_ns = lost_ms * MS;
+        let (size, tile, machine, noise) = ((8, 4), 4, &machine, &noise);
+        let text =
+            Report { scene: "room", size, tile, explanation: &explanation, rays: &|_| None, machine, noise }
+                .text();
+        assert_eq!(text.contains("\nMost is lost to imbalance (8 %): "), verdict, "{text}");
+        assert_eq!(text.contains("\nNo verdict: "), !verdict, "{text}");
+    }
+}
+
 /// Catches times of which no digit is left, and strategies of one report told in several units.
 #[test]
 fn short_renderings_are_told_in_microseconds() {
