@@ -244,7 +244,7 @@ fn threads_that_cannot_be_started_are_an_error_that_names_the_strategy() {
     let run = |arguments: &str| {
         let command = format!(
             "nobody=; if [ $(id -u) = 0 ]; then nobody='setpriv --reuid 65534 --clear-groups'; fi; \
-             exec prlimit --nproc=40 $nobody ./rayweave {arguments}"
+             exec prlimit --nproc=12 $nobody ./rayweave {arguments}"
         );
         let output = Command::new("sh").args(["-c", &command]).current_dir(folder.path()).output();
         Run::of(output.expect("a shell"))
@@ -254,18 +254,18 @@ fn threads_that_cannot_be_started_are_an_error_that_names_the_strategy() {
         .filter(|strategy| strategy.threads_start() != rayweave_core::ThreadsStart::Never);
     for strategy in parallel {
         let name = strategy.name();
-        // Each thread has enough to do not to end before the last is started.
+        // A dozen of them have enough to do not to end before the next is started.
         let size = "--size 200x200 --threads 1000";
         let message = run(&format!("render {size} --strategy {name} -o a.png")).expect_refusal();
         assert!(message.starts_with(&format!("error: {name}: cannot start 1000 threads")), "{message}");
     }
     // In a check it is a finding, and the check goes on.
     let name = rayweave_registry::recommended().name();
-    let check = run(&format!("check --size 8x8 --threads 1000 --strategy {name}"));
+    let check = run(&format!("check --size 32x32 --threads 1000 --strategy {name}"));
     assert_eq!(check.status, 1, "{}", check.stderr);
     assert!(check.stdout.contains("cannot start 1000 threads"), "{}", check.stdout);
     // In a comparison it ends its row, and the rest is measured.
-    let compare = run(&format!("compare --size 8x8 --threads 1000,1 --strategy {name} --time-limit 1"));
+    let compare = run(&format!("compare --size 32x32 --threads 1000,1 --strategy {name} --time-limit 1"));
     assert_eq!(compare.status, 1, "{}", compare.stderr);
     let complaint =
         format!("{name}, 1000 threads: failed after 0 samples: {name}: cannot start 1000 threads");
