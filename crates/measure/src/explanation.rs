@@ -98,6 +98,12 @@ impl Row {
     pub fn thread_time_ns(&self) -> f64 {
         self.threads as f64 * self.wall_ns
     }
+
+    /// What the causes do not add up to of the loss, in nanoseconds; below 0 if they are more.
+    #[must_use]
+    pub fn unexplained_ns(&self) -> f64 {
+        self.lost_ns - self.losses.total_ns()
+    }
 }
 
 /// A strategy with a number of threads, recorded or not, and what its renderings gave.

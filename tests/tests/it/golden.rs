@@ -5,7 +5,7 @@
 //! change. To print new ones, run `cargo test -p rayweave-tests golden`: the failure shows
 //! the whole table as it has to stand here.
 
-use rayweave_core::{Arithmetic, Formulas, Precision, Sampling, Scene, tracer};
+use rayweave_core::{Arithmetic, Formulas, Image, Precision, Sampling, Scene, tracer};
 use rayweave_tests::{picture, random_scene::random_scene, scenes};
 
 const WIDTH: u32 = 100;
@@ -45,13 +45,17 @@ fn scene(name: &str) -> Scene {
     }
 }
 
+/// Of the picture's digest, 16 hexadecimal ones.
+fn first_digits(image: &Image) -> u64 {
+    u64::from_str_radix(&image.digest().short(), 16).expect("16 hexadecimal digits")
+}
+
 fn digests(scene: &Scene) -> [[u64; 2]; 2] {
     [Precision::F32, Precision::F64].map(|precision| {
         [0, 2].map(|antialiasing| {
             let mut scene = scene.clone();
             scene.render.antialiasing = antialiasing;
-            let digest = picture::of_scene(&scene, WIDTH, HEIGHT, precision).digest();
-            u64::from_str_radix(&digest.short(), 16).expect("16 hexadecimal digits")
+            first_digits(&picture::of_scene(&scene, WIDTH, HEIGHT, precision))
         })
     })
 }
@@ -79,8 +83,7 @@ fn textbook_pictures_stay_what_they_are() {
         let digests = [Precision::F32, Precision::F64].map(|precision| {
             let arithmetic = Arithmetic { formulas: Formulas::Textbook, precision };
             let work = tracer(&scene, WIDTH, HEIGHT, arithmetic).expect("a sound scene");
-            let digest = picture::pixel_by_pixel(&*work, WIDTH, HEIGHT).digest();
-            u64::from_str_radix(&digest.short(), 16).expect("16 hexadecimal digits")
+            first_digits(&picture::pixel_by_pixel(&*work, WIDTH, HEIGHT))
         });
         (name, digests)
     });
@@ -93,10 +96,8 @@ fn importance_pictures_stay_what_they_are() {
     let mut scene = scene("report");
     scene.render.antialiasing = 2;
     scene.render.sampling = Sampling::Importance;
-    let found = [Precision::F32, Precision::F64].map(|precision| {
-        let digest = picture::of_scene(&scene, WIDTH, HEIGHT, precision).digest();
-        u64::from_str_radix(&digest.short(), 16).expect("16 hexadecimal digits")
-    });
+    let found = [Precision::F32, Precision::F64]
+        .map(|precision| first_digits(&picture::of_scene(&scene, WIDTH, HEIGHT, precision)));
     assert!(found == IMPORTANCE, "the pictures are now {found:#018x?}");
 }
 
@@ -106,10 +107,8 @@ fn adaptive_pictures_stay_what_they_are() {
     let found = ["room", "report"].map(|name| {
         let mut scene = scene(name);
         (scene.render.antialiasing, scene.render.adaptive) = (4, true);
-        [Precision::F32, Precision::F64].map(|precision| {
-            let digest = picture::of_scene(&scene, WIDTH, HEIGHT, precision).digest();
-            u64::from_str_radix(&digest.short(), 16).expect("16 hexadecimal digits")
-        })
+        [Precision::F32, Precision::F64]
+            .map(|precision| first_digits(&picture::of_scene(&scene, WIDTH, HEIGHT, precision)))
     });
     assert!(found == ADAPTIVE, "the pictures are now {found:#018x?}");
 }

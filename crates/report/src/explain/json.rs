@@ -82,7 +82,7 @@ fn entry<'a>(report: &Report<'a>, row: &'a Row) -> Entry<'a> {
         speedup: report.explanation.reference_ns / row.wall_ns,
         lost_ns: row.lost_ns,
         losses_ns: causes(&row.losses),
-        unexplained_ns: row.lost_ns - row.losses.total_ns(),
+        unexplained_ns: row.unexplained_ns(),
         recorded_over_plain: row.recorded.into(),
         imbalance: imbalance(row),
         long_gap_ns: row.long_gap_ns,

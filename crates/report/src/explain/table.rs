@@ -48,7 +48,7 @@ fn causes(explanation: &Explanation, row: &Row, unit: Unit) -> String {
     };
     let useful = cells("useful work", explanation.reference_ns, 1.0);
     let lost = Cause::ALL.map(|cause| cells(name(cause), row.losses.to(cause), -1.0));
-    let rest = cells("not explained", row.lost_ns - row.losses.total_ns(), -1.0);
+    let rest = cells("not explained", row.unexplained_ns(), -1.0);
     let rows = [useful].into_iter().chain(lost).chain([rest]);
     style::table(["thread-time", unit.name, "", "speed-up"], rows, 1..=3)
 }
@@ -123,7 +123,7 @@ fn advice(row: &Row) -> String {
     if share < NOTABLE {
         return "No cause takes 1 % of the thread-time.".to_owned();
     }
-    if (row.lost_ns - row.losses.total_ns()).abs() > row.losses.to(cause) {
+    if row.unexplained_ns().abs() > row.losses.to(cause) {
         return "No verdict: recorded and plain renderings differ by more than any cause takes. Measure longer \
                 (--time-limit), or on a quieter machine."
             .to_owned();
