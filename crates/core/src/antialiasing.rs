@@ -73,14 +73,27 @@ impl<S: Scalar> Filter<S> {
         &self.places
     }
 
+    /// Neighbouring pixels, the first one's samples' colours beginning at number `first`.
+    pub(crate) fn sums(&self, colors: &Colors<S>, first: usize, pixels: &mut [Rgb]) {
+        let samples = self.places.len();
+        if samples == 1 {
+            // The general sum is a noticeable share of such a rendering.
+            let here = colors.range(first..first + pixels.len());
+            for (pixel, color) in pixels.iter_mut().zip(here) {
+                *pixel = color.to_array().map(S::to_f32);
+            }
+            return;
+        }
+        for (i, pixel) in pixels.iter_mut().enumerate() {
+            *pixel = self.sum(colors, first + i * samples);
+        }
+    }
+
     /// The pixel whose samples' colours begin at number `first`.
     ///
     /// Each row of samples is summed from the left, then the rows from the top: a fixed order, and
     /// one in which a row's sum serves every pixel that needs it.
-    pub(crate) fn sum(&self, colors: &Colors<S>, first: usize) -> Rgb {
-        if self.places.len() == 1 {
-            return colors.get(first).to_array().map(S::to_f32);
-        }
+    fn sum(&self, colors: &Colors<S>, first: usize) -> Rgb {
         let mut sample_colors = colors.range(first..first + self.places.len());
         let mut color = Vector::zero();
         for row in &self.rows {

@@ -63,10 +63,13 @@ impl<'a, S: Scalar> LatticeSums<'a, S> {
     /// Takes over the colours of the expected points, in their order; what follows them is of lanes without a point.
     pub(crate) fn fill(&mut self, colors: &Colors<S>) {
         debug_assert!(colors.channels[0].len() >= self.slots.len(), "a point without a colour");
-        for (kept, channel) in self.strip.iter_mut().zip(&colors.channels) {
-            for (&slot, &color) in self.slots.iter().zip(channel) {
-                kept[slot as usize] = color;
-            }
+        let [red, green, blue] = &mut self.strip;
+        // Of one length, so that a slot is checked once.
+        let (green, blue) = (&mut green[..red.len()], &mut blue[..red.len()]);
+        let [reds, greens, blues] = &colors.channels;
+        for (((&slot, &r), &g), &b) in self.slots.iter().zip(reds).zip(greens).zip(blues) {
+            let slot = slot as usize;
+            (red[slot], green[slot], blue[slot]) = (r, g, b);
         }
     }
 

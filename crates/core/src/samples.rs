@@ -78,11 +78,6 @@ impl<S: Scalar> Colors<S> {
         self.trails.resize(if trails { count } else { 0 }, 0);
     }
 
-    pub(crate) fn get(&self, i: usize) -> Vector<S> {
-        let [red, green, blue] = &self.channels;
-        Vector::new(red[i], green[i], blue[i])
-    }
-
     /// The colours of these samples.
     #[inline(always)]
     pub(crate) fn range(&self, samples: Range<usize>) -> impl Iterator<Item = Vector<S>> {

@@ -141,10 +141,8 @@ impl<L: Lane, F: Family> Tracer<L, F> {
                 self.trace(&places, (zero, zero), &mut colors);
                 let mut first = 0;
                 for (columns, row) in batch {
-                    for pixel in &mut tile.row_mut(*row)[columns.clone()] {
-                        *pixel = self.filter.sum(&colors, first);
-                        first += samples.len();
-                    }
+                    self.filter.sums(&colors, first, &mut tile.row_mut(*row)[columns.clone()]);
+                    first += columns.len() * samples.len();
                 }
             }
         }

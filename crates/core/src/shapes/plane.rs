@@ -14,8 +14,16 @@ pub(crate) struct Plane<S> {
     /// a ray that starts in the plane would hit it.
     pub(crate) normal: Vector<S>,
     unit_normal: Vector<S>,
-    /// Of which axis the normal has nothing but this component, if so.
-    across: Option<usize>,
+    /// If the normal has but one component.
+    across: Option<Across<S>>,
+}
+
+/// The axis of the normal, and the normal and the point along it.
+#[derive(Clone, Copy, Debug)]
+struct Across<S> {
+    axis: usize,
+    normal: S,
+    point: S,
 }
 
 impl<S: Scalar> Plane<S> {
@@ -24,12 +32,12 @@ impl<S: Scalar> Plane<S> {
         let zero = S::literal(0.0);
         let others_are_zero =
             |axis: &usize| normal.to_array().iter().enumerate().all(|(i, n)| i == *axis || n.equals(zero));
-        Self {
-            point: Vector::rounded(plane.point),
-            normal,
-            unit_normal: Vector::rounded(scene::unit(plane.normal)),
-            across: (0..3).find(others_are_zero),
-        }
+        let point = Vector::<S>::rounded(plane.point);
+        let across = (0..3).find(others_are_zero).map(|axis| {
+            let [normal, point] = [normal, point].map(|v| v.to_array()[axis]);
+            Across { axis, normal, point }
+        });
+        Self { point, normal, unit_normal: Vector::rounded(scene::unit(plane.normal)), across }
     }
 
     /// `t = n . (point - origin) / n . d`: the difference first, so that a scene far from the
@@ -41,10 +49,14 @@ impl<S: Scalar> Plane<S> {
     pub(crate) fn intersect<L: Lane<Scalar = S>>(&self, ray: &Ray<L>) -> L {
         let t = match self.across {
             // The other products are zeros, which change no sum.
-            Some(axis) => {
-                let [normal, point] = [self.normal, self.point].map(|v| L::splat(v.to_array()[axis]));
-                let [origin, direction] = [ray.origin, ray.direction].map(|v| v.to_array()[axis]);
-                normal * (point - origin) / (normal * direction)
+            Some(Across { axis, normal, point }) => {
+                let (origin, direction) = match axis {
+                    0 => (ray.origin.x, ray.direction.x),
+                    1 => (ray.origin.y, ray.direction.y),
+                    _ => (ray.origin.z, ray.direction.z),
+                };
+                let normal = L::splat(normal);
+                normal * (L::splat(point) - origin) / (normal * direction)
             }
             None => {
                 let normal = Vector::splat(self.normal);
