@@ -30,7 +30,8 @@ pub struct Analysis {
 pub enum Found {
     /// It tries each.
     Each,
-    /// It tries those in whose direction it goes, if it starts at the eye or ends at a light; else each.
+    /// It tries those in whose direction it goes, if it starts at the eye or ends at a light; else each, triangles if it
+    /// comes near any.
     Cones,
     /// It follows a tree of boxes of this many leaves.
     Tree {
@@ -95,7 +96,7 @@ impl fmt::Display for Analysis {
             Found::Each => writeln!(f, "search: every ray tries every primitive")?,
             Found::Cones => writeln!(
                 f,
-                "search: rays from the eye, also by a plane's mirror, and to a light try what is in their direction; others each primitive"
+                "search: rays from the eye, also by a plane's mirror, and to a light try what is in their direction; others each primitive, triangles if they come near any"
             )?,
             Found::Tree { leaves } => writeln!(f, "search: a tree of boxes with {leaves} leaves")?,
         }

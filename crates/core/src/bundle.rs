@@ -1,31 +1,54 @@
 //! Rays through one point: all that leave the eye, that a plane mirrors straight from there, or that look at one light.
 //!
 //! Seen from that point a primitive fills a cone of directions. Whether a ray is outside of the cone is one dot
-//! product; only the others are tried. The cones are wider than the primitives by more than the errors of what is
-//! tried, so they change no picture.
+//! product; only the others are tried. Mostly the rays of a packet are so close together that one of them can be held
+//! against many cones at once, each wider by as much as the others may be apart from it. The cones are wider than the
+//! primitives by more than the errors of what is tried, so they change no picture, barring underflow.
 
-use crate::lane::{Lane, Scalar};
+use crate::lane::{Lane, Mask, Scalar};
 use crate::scene::{self, Scene};
 use crate::shapes::MARGIN;
 use crate::vector::Vector;
 use glam::DVec3;
 
-/// A cone for each primitive that is not a plane, by kind, in file order.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Bundle<S> {
-    pub(crate) spheres: Vec<Cone<S>>,
-    pub(crate) triangles: Vec<Cone<S>>,
-    pub(crate) cylinders: Vec<Cone<S>>,
+/// A cone for each primitive that is not a plane: spheres, triangles, cylinders, each in file order.
+#[derive(Clone, Debug)]
+pub(crate) struct Bundle<S: Scalar> {
+    blocks: Vec<Block<S>>,
+    /// What a unit of a ray's length adds to its cosine with all axes: its end is known the less exactly, the farther it
+    /// is, and this counts the more, the nearer a primitive is to the point.
+    widening: S,
+}
+
+/// As many cones as fill a register.
+#[derive(Clone, Debug)]
+struct Block<S: Scalar> {
+    cones: Vec<Cone<S>>,
+    /// The same, each wider by `SPREAD` and by `SLACK`: for rays so close together that one of them stands for all.
+    wider: Cone<S::Wide256>,
 }
 
 /// The directions from the point in which a primitive may be.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Cone<S> {
-    axis: Vector<S>,
-    cosine: S,
-    /// What a unit of a ray's length adds: its end is known the less exactly, the farther it is.
-    widening: S,
+struct Cone<L> {
+    axis: Vector<L>,
+    cosine: L,
 }
+
+/// The sine of the largest angle to a ray that is tested for others.
+const SPREAD: f64 = 1.0 / 16.0;
+
+/// The cosine of that angle.
+fn spread_cosine() -> f64 {
+    (1.0 - SPREAD * SPREAD).sqrt()
+}
+
+/// By how much lengths may widen the cones of such rays: in `f32`, of rays up to 100 times as long as the nearest
+/// primitive is far from the point.
+const SLACK: f64 = 1.0 / 1024.0;
+
+/// Of a cone that holds all directions.
+const EVERYTHING: f64 = -4.0;
 
 impl<S: Scalar> Bundle<S> {
     /// The cones of `scene`'s primitives, seen from `point`.
@@ -44,25 +67,64 @@ impl<S: Scalar> Bundle<S> {
 
     /// The cones around a point that is known up to `uncertainty`.
     fn around(scene: &Scene, point: DVec3, uncertainty: f64) -> Self {
-        let cone = |center: DVec3, radius: f64| Cone::new(point, center, radius + uncertainty);
+        let spheres = scene.spheres.iter().map(|s| (s.center, s.radius));
+        let triangles = scene.triangles.iter().map(scene::Triangle::around);
+        let cylinders = (scene.cylinders.iter())
+            .map(|c| ((c.bottom + c.top) / 2.0, c.radius.hypot((c.top.y - c.bottom.y) / 2.0)));
+        let around = spheres.chain(triangles).chain(cylinders);
+        Self::of(around.map(|(center, radius)| (center, radius + uncertainty)), point)
+    }
+
+    /// The cones around spheres, each given by its centre and its radius.
+    fn of(spheres: impl Iterator<Item = (DVec3, f64)>, point: DVec3) -> Self {
+        let (cones, distances): (Vec<_>, Vec<_>) =
+            spheres.map(|(center, radius)| Cone::new(point, center, radius)).unzip();
+        let nearest = distances.into_iter().fold(f64::INFINITY, f64::min);
         Self {
-            spheres: scene.spheres.iter().map(|s| cone(s.center, s.radius)).collect(),
-            triangles: (scene.triangles.iter())
-                .map(|triangle| {
-                    let [a, b, c] = triangle.vertices;
-                    let middle = (a.min(b).min(c) + a.max(b).max(c)) / 2.0;
-                    cone(middle, [a, b, c].map(|v| v.distance(middle)).into_iter().fold(0.0, f64::max))
-                })
-                .collect(),
-            cylinders: (scene.cylinders.iter())
-                .map(|c| cone((c.bottom + c.top) / 2.0, c.radius.hypot((c.top.y - c.bottom.y) / 2.0)))
-                .collect(),
+            blocks: cones.chunks(S::Wide256::LANES).map(Block::new).collect(),
+            widening: S::from_f64(2.0 * MARGIN * S::ROUNDOFF / nearest),
+        }
+    }
+
+    /// Shows `found` each primitive whose cone some ray of `wanted` is in, by its place among those that are not planes,
+    /// in order, and these rays; `found` returns the rays that still want to know. The rays' unit directions away from
+    /// the point, and their lengths, are `(direction, length)`.
+    #[inline(always)]
+    pub(crate) fn met<L: Lane<Scalar = S>>(
+        &self,
+        (direction, length): (Vector<L>, L),
+        mut wanted: L::Mask,
+        mut found: impl FnMut(usize, L::Mask) -> L::Mask,
+    ) {
+        let Some([x, y, z]) = L::first(wanted, direction.to_array()) else { return };
+        let one = Vector::new(x, y, z);
+        let widening = L::splat(self.widening) * length;
+        let close = L::literal(spread_cosine()).le(Vector::splat(one).dot(direction));
+        let together = !(wanted & !(close & widening.le(L::literal(SLACK)))).any();
+        let mut first = 0;
+        for block in &self.blocks {
+            let mut candidates = (1 << block.cones.len()) - 1;
+            if together {
+                candidates &= block.wider.holds(Vector::splat(one), Lane::literal(0.0)).bits();
+            }
+            while candidates != 0 {
+                let i = candidates.trailing_zeros() as usize;
+                candidates &= candidates - 1;
+                let cone = &block.cones[i];
+                let cone = Cone { axis: Vector::splat(cone.axis), cosine: L::splat(cone.cosine) };
+                let met = wanted & cone.holds(direction, widening);
+                if met.any() {
+                    wanted = found(first + i, met);
+                }
+            }
+            first += block.cones.len();
         }
     }
 }
 
 impl<S: Scalar> Cone<S> {
-    fn new(point: DVec3, center: DVec3, radius: f64) -> Self {
+    /// Around a sphere, and how far away that is; infinitely, if it does not matter.
+    fn new(point: DVec3, center: DVec3, radius: f64) -> (Self, f64) {
         let unit = MARGIN * S::ROUNDOFF;
         let toward = center - point;
         let distance = toward.length();
@@ -70,21 +132,109 @@ impl<S: Scalar> Cone<S> {
         let sine = (radius + unit * reach) / distance;
         // Too near, or numbers that are none: every direction.
         if !(sine < 0.99 && distance.is_normal()) {
-            let everything = S::from_f64(-4.0);
-            return Self { axis: Vector::zero(), cosine: everything, widening: S::literal(0.0) };
+            return (Self { axis: Vector::zero(), cosine: S::from_f64(EVERYTHING) }, f64::INFINITY);
         }
-        Self {
-            axis: Vector::rounded(toward / distance),
-            cosine: S::from_f64((1.0 - sine * sine).sqrt() - unit),
-            widening: S::from_f64(2.0 * unit / distance),
-        }
+        let axis = Vector::rounded(toward / distance);
+        (Self { axis, cosine: S::from_f64((1.0 - sine * sine).sqrt() - unit) }, distance)
+    }
+}
+
+impl<S: Scalar> Block<S> {
+    fn new(cones: &[Cone<S>]) -> Self {
+        let side_by_side = |number: &dyn Fn(&Cone<S>) -> S| {
+            S::Wide256::from_fn(|i| cones.get(i).map_or(S::literal(0.0), number))
+        };
+        let axis = [|c: &Cone<S>| c.axis.x, |c: &Cone<S>| c.axis.y, |c: &Cone<S>| c.axis.z];
+        let [x, y, z] = axis.map(|component| side_by_side(&component));
+        let cosine = side_by_side(&|cone| S::from_f64(Self::wider(cone.cosine.to_f64())));
+        Self { cones: cones.to_vec(), wider: Cone { axis: Vector::new(x, y, z), cosine } }
     }
 
-    /// The rays that may meet the primitive: of unit `direction` away from the point, and `length` long.
+    /// The cosine of the angle of a cone, of this cosine, that is made wider.
+    fn wider(cosine: f64) -> f64 {
+        let cosine = cosine - SLACK;
+        if cosine <= -spread_cosine() {
+            return EVERYTHING;
+        }
+        let sum_of_angles = cosine * spread_cosine() - (1.0 - cosine * cosine).sqrt() * SPREAD;
+        // The angle between rays so close is known to 13 / `SPREAD` roundings, all else to 20.
+        sum_of_angles - 8.0 * MARGIN * S::ROUNDOFF
+    }
+}
+
+impl<L: Lane> Cone<L> {
+    /// Whether it holds a unit direction, if its own cosine were less by `widening`.
     #[inline(always)]
-    pub(crate) fn may_meet<L: Lane<Scalar = S>>(&self, direction: Vector<L>, length: L) -> L::Mask {
-        let cosine = Vector::splat(self.axis).dot(direction) + L::splat(self.widening) * length;
+    fn holds(&self, direction: Vector<L>, widening: L) -> L::Mask {
         // Asked this way, numbers that are none rule nothing out.
-        !cosine.lt(L::splat(self.cosine))
+        !(self.axis.dot(direction) + widening).lt(self.cosine)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::places;
+    use std::array::from_fn;
+    use wide::f32x8;
+
+    /// Packets of rays next to each other, some closer together than `SPREAD` and some not: whatever the cone of any
+    /// ray holds is shown, as if each cone were asked for each ray.
+    #[test]
+    fn no_cone_is_left_out() {
+        let mut place = places();
+        let (mut together, mut shown) = (0, 0);
+        for _ in 0..100_000 {
+            let spheres: [_; 11] = from_fn(|_| (place() * 4.0 - 2.0, 0.1 + place().x * 0.6));
+            let bundle = Bundle::<f32>::of(spheres.into_iter(), place());
+            let (middle, apart) = ((place() - 0.5).normalize(), 0.05 + place().x * 0.025);
+            let aside =
+                |lane: usize| if lane == 0 { DVec3::ZERO } else { (place() - 0.5).normalize() * apart };
+            let rays: [DVec3; 8] = from_fn(aside).map(|aside| (middle + aside).normalize());
+            let of = |axis: usize| f32x8::from_fn(|lane| rays[lane][axis] as f32);
+            let direction = Vector::new(of(0), of(1), of(2));
+            let length = f32x8::splat(place().x as f32 * 20.0);
+            let all = f32x8::first_lanes(8);
+
+            let mut found = Vec::new();
+            bundle.met((direction, length), all, |i, met| {
+                found.push((i, met.bits()));
+                all
+            });
+            let widening = length * f32x8::splat(bundle.widening);
+            let cones = bundle.blocks.iter().flat_map(|block| &block.cones);
+            let expected: Vec<(usize, u32)> = (cones.enumerate())
+                .map(|(i, cone)| {
+                    let cone = Cone { axis: Vector::splat(cone.axis), cosine: f32x8::splat(cone.cosine) };
+                    (i, cone.holds(direction, widening).bits())
+                })
+                .filter(|&(_, met)| met != 0)
+                .collect();
+            assert_eq!(found, expected);
+            together += usize::from(rays.iter().all(|ray| ray.dot(rays[0]) > spread_cosine()));
+            shown += found.len();
+        }
+        // Neither nothing nor everything.
+        assert!((25_000..75_000).contains(&together), "{together}");
+        assert!((20_000..500_000).contains(&shown), "{shown}");
+    }
+
+    /// A ray at the edge of a cone that its length widens as much as may be, tested by one as far from it as may be and
+    /// on the far side.
+    #[test]
+    fn the_widest_cone_holds_the_farthest_ray() {
+        for radius in [0.01, 0.1, 0.5, 0.9] {
+            let bundle = Bundle::<f32>::of([(DVec3::Z, radius)].into_iter(), DVec3::ZERO);
+            let edge = (f64::from(bundle.blocks[0].cones[0].cosine) - 0.98 * SLACK).acos();
+            let rays = [edge + 0.999 * SPREAD.asin(), edge].map(|angle| [angle.sin(), 0.0, angle.cos()]);
+            let of = |axis: usize| f32x8::from_fn(|lane| rays[lane.min(1)][axis] as f32);
+            let length = f32x8::splat(0.99 * SLACK as f32 / bundle.widening);
+            let mut found = Vec::new();
+            bundle.met((Vector::new(of(0), of(1), of(2)), length), f32x8::first_lanes(2), |i, met| {
+                found.push((i, met.bits()));
+                met
+            });
+            assert_eq!(found, [(0, 0b10)], "radius {radius}");
+        }
     }
 }

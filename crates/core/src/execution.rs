@@ -20,8 +20,8 @@ pub struct Execution {
 /// depends on where they look.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Search {
-    /// What the scene's shape does not rule out: by cones of directions around the eye and the lights, or, among many
-    /// primitives, by a tree of boxes.
+    /// What the scene's shape does not rule out: by cones of directions around the eye, its images and the lights, and by
+    /// spheres around triangles; or, among many primitives, by a tree of boxes.
     #[default]
     Auto,
     /// Each: the definition, to hold the other against.

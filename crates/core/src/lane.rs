@@ -15,6 +15,8 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 pub trait Mask: Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
     /// Whether it holds in any lane.
     fn any(self) -> bool;
+    /// A bit a lane, the first lane's being the lowest.
+    fn bits(self) -> u32;
 }
 
 /// One number a lane.
@@ -105,7 +107,7 @@ pub trait Lane:
 /// A lane of one: the types in which a scene is stored.
 pub trait Scalar: Lane<Scalar = Self, Mask = bool, Index = u32> + Default + Send + Sync + 'static {
     /// As many as fill 256 bits.
-    type Wide256: Lane<Scalar = Self>;
+    type Wide256: Lane<Scalar = Self> + Send + Sync;
     /// As many as fill 512 bits.
     type Wide512: Lane<Scalar = Self>;
     /// Unit roundoff `u`: the largest relative error of one rounded operation.
@@ -129,6 +131,10 @@ impl Mask for bool {
     #[inline(always)]
     fn any(self) -> bool {
         self
+    }
+    #[inline(always)]
+    fn bits(self) -> u32 {
+        self.into()
     }
 }
 

@@ -75,6 +75,9 @@ impl Mask for QuadMask {
     fn any(self) -> bool {
         self.0.contains(&true)
     }
+    fn bits(self) -> u32 {
+        (0..4).map(|i| u32::from(self.0[i]) << i).sum()
+    }
 }
 
 impl Lane for Quad {

@@ -15,6 +15,7 @@ mod bundle;
 mod camera;
 pub mod cast;
 mod confinement;
+mod enclosure;
 pub mod execution;
 pub mod formulas;
 pub mod image;
@@ -28,6 +29,8 @@ mod material;
 mod packet;
 pub mod precision;
 mod primitives;
+#[cfg(test)]
+mod random;
 mod ray;
 mod sample_count;
 mod samples;

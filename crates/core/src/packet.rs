@@ -14,6 +14,10 @@ macro_rules! packet {
             fn any(self) -> bool {
                 $packet::any(self)
             }
+            #[inline(always)]
+            fn bits(self) -> u32 {
+                self.to_bitmask()
+            }
         }
 
         impl Lane for $packet {

@@ -2,6 +2,7 @@
 //! anything in between.
 
 use crate::bundle::Bundle;
+use crate::enclosure::Enclosure;
 use crate::execution::Search;
 use crate::formulas::{Aim, Family, LightPath};
 use crate::kind::{Kind, Leaf};
@@ -33,6 +34,8 @@ pub(crate) struct Primitives<S> {
     triangles_and_others: [Leaf; 2],
     /// Over these, where there are enough of them.
     tree: Option<Tree<S>>,
+    /// Around each triangle, where the nearest hit is asked for rays of unit direction only and no tree finds it.
+    around_triangles: Vec<Enclosure<S>>,
     /// The material of each primitive, by its number.
     materials: Vec<usize>,
 }
@@ -91,6 +94,7 @@ impl<S: Scalar> Primitives<S> {
                 },
             ],
             tree: None,
+            around_triangles: vec![],
             materials,
         };
         if search == Search::Auto {
@@ -106,6 +110,12 @@ impl<S: Scalar> Primitives<S> {
     /// Of the tree, if there is one.
     pub(crate) fn leaves(&self) -> Option<usize> {
         self.tree.as_ref().map(Tree::leaves)
+    }
+
+    /// From now on all rays of which the nearest hit is asked have unit direction. No shadow ray asks for triangles by
+    /// heading: where there are enclosures, lights have bundles.
+    pub(crate) fn enclose_triangles(&mut self, scene: &Scene) {
+        self.around_triangles = scene.triangles.iter().map(Enclosure::new).collect();
     }
 
     /// Puts a tree over the bounded primitives, if there are enough of them.
@@ -182,8 +192,9 @@ impl<S: Scalar> Primitives<S> {
                 });
             }),
             (_, Some((bundle, distance))) if F::FAITHFUL => {
-                self.met::<L, F>(bundle, ray, (ray.direction, distance), wanted, |number, t| {
-                    nearest.offer::<true>(number, t);
+                bundle.met((ray.direction, distance), wanted, |i, met| {
+                    let number = self.spheres.first + i as u32;
+                    nearest.offer::<true>(number, self.bounded::<L, F>(i, ray, met));
                     wanted
                 });
             }
@@ -214,41 +225,29 @@ impl<S: Scalar> Primitives<S> {
         if !F::FAITHFUL {
             return leaf(triangles, &any_heading, wanted);
         }
-        ray.by_heading(wanted, |heading, wanted| {
+        ray.by_heading(self.near_triangles(ray, wanted), |heading, wanted| {
             leaf(triangles, &Aim { triangle: triangle::Aim::new(ray, heading), ..any_heading }, wanted);
         });
     }
 
-    /// Shows `found` the number and the `t` of every bounded primitive, in order, whose cone some ray of `wanted` is
-    /// in; `found` returns the rays that still want to know. The rays' unit directions away from the bundle's point,
-    /// and their lengths, are `(direction, length)`.
+    /// The rays of `wanted` that come near any triangle, or all if that is not known.
     #[inline(always)]
-    fn met<L: Lane<Scalar = S>, F: Family>(
-        &self,
-        bundle: &Bundle<S>,
-        ray: &Ray<L>,
-        (direction, length): (Vector<L>, L),
-        mut wanted: L::Mask,
-        mut found: impl FnMut(u32, L) -> L::Mask,
-    ) {
-        for (i, cone) in bundle.spheres.iter().enumerate() {
-            let met = wanted & cone.may_meet(direction, length);
-            if met.any() {
-                wanted = found(self.spheres.first + i as u32, self.sphere::<L, F>(i, ray, met));
-            }
+    fn near_triangles<L: Lane<Scalar = S>>(&self, ray: &Ray<L>, wanted: L::Mask) -> L::Mask {
+        let Some((first, others)) = self.around_triangles.split_first() else { return wanted };
+        wanted & others.iter().fold(first.may_meet(ray), |near, around| near | around.may_meet(ray))
+    }
+
+    /// Where rays of `wanted` hit the primitive in place `i` of all that are not planes, without a tree.
+    #[inline(always)]
+    fn bounded<L: Lane<Scalar = S>, F: Family>(&self, mut i: usize, ray: &Ray<L>, wanted: L::Mask) -> L {
+        if i < self.spheres.shapes.len() {
+            return self.sphere::<L, F>(i, ray, wanted);
         }
-        for (i, cone) in bundle.triangles.iter().enumerate() {
-            let met = wanted & cone.may_meet(direction, length);
-            if met.any() {
-                wanted = found(self.triangles.first + i as u32, self.triangle::<L, F>(i, ray, met));
-            }
+        i -= self.spheres.shapes.len();
+        if i < self.triangles.shapes.len() {
+            return self.triangle::<L, F>(i, ray, wanted);
         }
-        for (i, cone) in bundle.cylinders.iter().enumerate() {
-            let met = wanted & cone.may_meet(direction, length);
-            if met.any() {
-                wanted = found(self.cylinders.first + i as u32, self.cylinder::<L, F>(i, ray, met));
-            }
-        }
+        self.cylinder::<L, F>(i - self.triangles.shapes.len(), ray, wanted)
     }
 
     // Where rays of `wanted` hit the shape of a kind in place `i`. Called where few rays come, and so not copied there:
@@ -322,8 +321,8 @@ impl<S: Scalar> Primitives<S> {
                 });
             }),
             (_, Some(bundle)) if F::FAITHFUL => {
-                self.met::<L, F>(bundle, ray, (-path.to_light, path.distance), free, |_, t| {
-                    free = free & !t.lt(limit);
+                bundle.met((-path.to_light, path.distance), free, |i, met| {
+                    free = free & !self.bounded::<L, F>(i, ray, met).lt(limit);
                     free
                 });
             }

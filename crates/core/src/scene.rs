@@ -334,6 +334,13 @@ impl Sphere {
 }
 
 impl Triangle {
+    /// A sphere around it, seldom the smallest: its centre and its radius.
+    pub(crate) fn around(&self) -> (DVec3, f64) {
+        let [a, b, c] = self.vertices;
+        let middle = (a.min(b).min(c) + a.max(b).max(c)) / 2.0;
+        (middle, self.vertices.map(|v| v.distance(middle)).into_iter().fold(0.0, f64::max))
+    }
+
     /// Whether the triangle is finite and has an area.
     ///
     /// # Errors

@@ -18,7 +18,7 @@ use std::marker::PhantomData;
 
 /// A scene in the precision and with the formulas of a picture, ready for rays.
 #[derive(Debug)]
-pub(crate) struct World<S, F> {
+pub(crate) struct World<S: Scalar, F> {
     pub(crate) primitives: Primitives<S>,
     materials: Vec<Material<S>>,
     pub(crate) lights: Vec<Light<S>>,
@@ -57,8 +57,11 @@ impl<S: Scalar, F: Family> World<S, F> {
             (Some(_), Search::Auto) => &in_front(scene, S::ROUNDOFF),
             _ => scene,
         };
-        let primitives = Primitives::new(scene, search);
+        let mut primitives = Primitives::new(scene, search);
         let cones = search == Search::Auto && primitives.leaves().is_none();
+        if cones && eye.is_some() {
+            primitives.enclose_triangles(scene);
+        }
         let bundle = |point: DVec3| cones.then(|| Bundle::new(scene, point));
         // Formulas that let a ray slip through a plane may bring it anywhere.
         let confined = eye.filter(|_| F::FAITHFUL);
@@ -143,22 +146,24 @@ impl<S: Scalar, F: Family> World<S, F> {
     /// What is hit: each distinct primitive is looked up once, for all lanes that hit it.
     #[inline(always)]
     fn surface<L: Lane<Scalar = S>>(&self, hit: &Hit<L>, ray: &Ray<L>, active: L::Mask) -> Surface<L> {
-        let look_up = |number: u32| {
-            let at = self.primitives.surface::<L, F>(number, ray, hit.t);
-            Surface { at, finish: Finish::splat(&self.materials[self.primitives.material(number)]) }
-        };
         let mut surface: Option<Surface<L>> = None;
         let mut todo = active;
-        while let Some(number) = L::first_index(todo, hit.primitive) {
+        loop {
+            let number = L::first_index(todo, hit.primitive).unwrap_or(0);
             let here = L::index_equals(hit.primitive, number);
-            let found = look_up(number);
-            surface = Some(match surface {
+            let at = self.primitives.surface::<L, F>(number, ray, hit.t);
+            let found =
+                Surface { at, finish: Finish::splat(&self.materials[self.primitives.material(number)]) };
+            let all = match surface {
                 Some(others) => Surface::select(here, found, others),
                 None => found,
-            });
+            };
             todo = todo & !here;
+            if !todo.any() {
+                return all;
+            }
+            surface = Some(all);
         }
-        surface.unwrap_or_else(|| look_up(0))
     }
 
     /// Phong's sum over the lights that a point sees.
@@ -201,7 +206,9 @@ impl<S: Scalar, F: Family> World<S, F> {
             }
             // m . -d with m = 2 (n . l) n - l.
             let mirror_cosine = to_light.dot(ray.direction) - two * cosine * facing;
-            let highlight = power(mirror_cosine.max(zero), finish.shininess, lit);
+            // Where there is none the base is 0, and stays so.
+            let shining = lit & zero.lt(mirror_cosine);
+            let highlight = power(mirror_cosine.max(zero), finish.shininess, shining);
             let answer = finish.color * (finish.diffuse * cosine)
                 + Vector::new(highlight, highlight, highlight) * finish.specular;
             color = Vector::select(lit, color + Vector::splat(light.intensity).scale(answer), color);
