@@ -24,9 +24,12 @@ pub(crate) struct Bundle<S: Scalar> {
 #[derive(Clone, Debug)]
 struct Block<S: Scalar> {
     cones: Vec<Cone<S>>,
-    /// The same, each wider by `SPREAD` and by `SLACK`: for rays so close together that one of them stands for all.
-    wider: Cone<S::Wide256>,
+    /// The same, each wider by `SPREAD` and by `SLACK`: for rays so close together that one of them stands for all. What
+    /// `f32` loses is little beside that.
+    wider: Cone<Register>,
 }
+
+type Register = <f32 as Scalar>::Wide256;
 
 /// The directions from the point in which a primitive may be.
 #[derive(Clone, Copy, Debug)]
@@ -81,7 +84,7 @@ impl<S: Scalar> Bundle<S> {
             spheres.map(|(center, radius)| Cone::new(point, center, radius)).unzip();
         let nearest = distances.into_iter().fold(f64::INFINITY, f64::min);
         Self {
-            blocks: cones.chunks(S::Wide256::LANES).map(Block::new).collect(),
+            blocks: cones.chunks(Register::LANES).map(Block::new).collect(),
             widening: S::from_f64(2.0 * MARGIN * S::ROUNDOFF / nearest),
         }
     }
@@ -101,11 +104,12 @@ impl<S: Scalar> Bundle<S> {
         let widening = L::splat(self.widening) * length;
         let close = L::literal(spread_cosine()).le(Vector::splat(one).dot(direction));
         let together = !(wanted & !(close & widening.le(L::literal(SLACK)))).any();
+        let register = Vector::splat(Vector::new(x.to_f32(), y.to_f32(), z.to_f32()));
         let mut first = 0;
         for block in &self.blocks {
             let mut candidates = (1 << block.cones.len()) - 1;
             if together {
-                candidates &= block.wider.holds(Vector::splat(one), Lane::literal(0.0)).bits();
+                candidates &= block.wider.holds(register, Lane::literal(0.0)).bits();
             }
             while candidates != 0 {
                 let i = candidates.trailing_zeros() as usize;
@@ -141,12 +145,12 @@ impl<S: Scalar> Cone<S> {
 
 impl<S: Scalar> Block<S> {
     fn new(cones: &[Cone<S>]) -> Self {
-        let side_by_side = |number: &dyn Fn(&Cone<S>) -> S| {
-            S::Wide256::from_fn(|i| cones.get(i).map_or(S::literal(0.0), number))
-        };
-        let axis = [|c: &Cone<S>| c.axis.x, |c: &Cone<S>| c.axis.y, |c: &Cone<S>| c.axis.z];
-        let [x, y, z] = axis.map(|component| side_by_side(&component));
-        let cosine = side_by_side(&|cone| S::from_f64(Self::wider(cone.cosine.to_f64())));
+        let side_by_side =
+            |number: fn(&Cone<S>) -> f32| Register::from_fn(|i| cones.get(i).map_or(0.0, number));
+        let x = side_by_side(|cone| cone.axis.x.to_f32());
+        let y = side_by_side(|cone| cone.axis.y.to_f32());
+        let z = side_by_side(|cone| cone.axis.z.to_f32());
+        let cosine = side_by_side(|cone| Self::wider(cone.cosine.to_f64()) as f32);
         Self { cones: cones.to_vec(), wider: Cone { axis: Vector::new(x, y, z), cosine } }
     }
 
@@ -158,7 +162,7 @@ impl<S: Scalar> Block<S> {
         }
         let sum_of_angles = cosine * spread_cosine() - (1.0 - cosine * cosine).sqrt() * SPREAD;
         // The angle between rays so close is known to 13 / `SPREAD` roundings, all else to 20.
-        sum_of_angles - 8.0 * MARGIN * S::ROUNDOFF
+        sum_of_angles - 8.0 * MARGIN * f32::ROUNDOFF
     }
 }
 

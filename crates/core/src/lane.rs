@@ -107,7 +107,7 @@ pub trait Lane:
 /// A lane of one: the types in which a scene is stored.
 pub trait Scalar: Lane<Scalar = Self, Mask = bool, Index = u32> + Default + Send + Sync + 'static {
     /// As many as fill 256 bits.
-    type Wide256: Lane<Scalar = Self> + Send + Sync;
+    type Wide256: Lane<Scalar = Self>;
     /// As many as fill 512 bits.
     type Wide512: Lane<Scalar = Self>;
     /// Unit roundoff `u`: the largest relative error of one rounded operation.
