@@ -1,4 +1,4 @@
-//! Spheres around triangles: rays that come near none need not be sorted by heading, which trying a triangle takes.
+//! Spheres around triangles: rays that come near none need not be sorted by axis, which trying a triangle takes.
 
 use crate::lane::{Lane, Scalar};
 use crate::ray::Ray;
@@ -47,7 +47,7 @@ impl<S: Scalar> Enclosure<S> {
 mod tests {
     use super::*;
     use crate::random::places;
-    use crate::ray::{Heading, miss};
+    use crate::ray::miss;
     use crate::shapes::triangle::{Aim, Triangle};
 
     /// Rays that graze the sphere where a corner of the triangle touches it: none that hits the triangle is ruled out,
@@ -72,8 +72,8 @@ mod tests {
             };
 
             let grazing = ray(corner);
-            grazing.by_heading(true, |heading: Heading, _| {
-                let t = Triangle::<S>::new(&triangle).intersect(&grazing, &Aim::new(&grazing, heading), true);
+            grazing.by_axis(true, |order, _| {
+                let t = Triangle::<S>::new(&triangle).intersect(&grazing, &Aim::new(&grazing, order), true);
                 let hit = t.lt(miss());
                 assert!(
                     !hit || Enclosure::<S>::new(&triangle).may_meet(&grazing),

@@ -8,7 +8,7 @@ use crate::formulas::{Aim, Family, LightPath};
 use crate::kind::{Kind, Leaf};
 use crate::lane::{Lane, Mask, Scalar};
 use crate::material::Light;
-use crate::ray::{Heading, Ray, miss};
+use crate::ray::{AxisOrder, Ray, miss};
 use crate::scene::Scene;
 use crate::shapes::SurfacePoint;
 use crate::shapes::cylinder::{self, Cylinder};
@@ -113,7 +113,7 @@ impl<S: Scalar> Primitives<S> {
     }
 
     /// From now on all rays of which the nearest hit is asked have unit direction. No shadow ray asks for triangles by
-    /// heading: where there are enclosures, lights have bundles.
+    /// axis: where there are enclosures, lights have bundles.
     pub(crate) fn enclose_triangles(&mut self, scene: &Scene) {
         self.around_triangles = scene.triangles.iter().map(Enclosure::new).collect();
     }
@@ -152,15 +152,15 @@ impl<S: Scalar> Primitives<S> {
         }
     }
 
-    /// What the shapes of each kind that is there ask of a ray, triangles of one with this heading.
+    /// What the shapes of each kind that is there ask of a ray, triangles of one that is longest along the last axis.
     #[inline(always)]
-    fn aim<L: Lane<Scalar = S>>(&self, ray: &Ray<L>, heading: Heading) -> Aim<L> {
+    fn aim<L: Lane<Scalar = S>>(&self, ray: &Ray<L>, order: AxisOrder) -> Aim<L> {
         Aim {
             sphere: if self.spheres.shapes.is_empty() { sphere::Aim::none() } else { sphere::Aim::new(ray) },
             triangle: if self.triangles.shapes.is_empty() {
                 triangle::Aim::none()
             } else {
-                triangle::Aim::new(ray, heading)
+                triangle::Aim::new(ray, order)
             },
             cylinder: if self.cylinders.shapes.is_empty() {
                 cylinder::Aim::none()
@@ -185,7 +185,7 @@ impl<S: Scalar> Primitives<S> {
         }
         match (&self.tree, from) {
             (Some(tree), _) if F::FAITHFUL => ray.by_heading(wanted, |heading, wanted| {
-                let aim = self.aim(ray, heading);
+                let aim = self.aim(ray, heading.order);
                 tree.visit(ray, heading, wanted, nearest.t, |leaf, reached| {
                     self.nearest_in::<L, F>(leaf, ray, &aim, reached, &mut nearest);
                     (wanted, nearest.t)
@@ -198,16 +198,16 @@ impl<S: Scalar> Primitives<S> {
                     wanted
                 });
             }
-            _ => self.by_heading::<L, F>(ray, wanted, |leaf, aim, wanted| {
+            _ => self.by_axis::<L, F>(ray, wanted, |leaf, aim, wanted| {
                 self.nearest_in::<L, F>(leaf, ray, aim, wanted, &mut nearest);
             }),
         }
         nearest
     }
 
-    /// Shows `leaf` all bounded primitives: triangles for each heading of the rays, if the formulas ask for it.
+    /// Shows `leaf` all bounded primitives: triangles for each axis along which rays are longest, if the formulas ask for it.
     #[inline(always)]
-    fn by_heading<L: Lane<Scalar = S>, F: Family>(
+    fn by_axis<L: Lane<Scalar = S>, F: Family>(
         &self,
         ray: &Ray<L>,
         wanted: L::Mask,
@@ -215,18 +215,18 @@ impl<S: Scalar> Primitives<S> {
     ) {
         let [triangles, others] = &self.triangles_and_others;
         let empty = Leaf::default();
-        let any_heading = self.aim(ray, Heading::default());
+        let any_order = self.aim(ray, AxisOrder::default());
         if *others != empty {
-            leaf(others, &any_heading, wanted);
+            leaf(others, &any_order, wanted);
         }
         if *triangles == empty {
             return;
         }
         if !F::FAITHFUL {
-            return leaf(triangles, &any_heading, wanted);
+            return leaf(triangles, &any_order, wanted);
         }
-        ray.by_heading(self.near_triangles(ray, wanted), |heading, wanted| {
-            leaf(triangles, &Aim { triangle: triangle::Aim::new(ray, heading), ..any_heading }, wanted);
+        ray.by_axis(self.near_triangles(ray, wanted), |order, wanted| {
+            leaf(triangles, &Aim { triangle: triangle::Aim::new(ray, order), ..any_order }, wanted);
         });
     }
 
@@ -261,8 +261,8 @@ impl<S: Scalar> Primitives<S> {
     #[inline(never)]
     fn triangle<L: Lane<Scalar = S>, F: Family>(&self, i: usize, ray: &Ray<L>, wanted: L::Mask) -> L {
         let mut nearest = miss();
-        ray.by_heading(wanted, |heading, wanted| {
-            let aim = triangle::Aim::new(ray, heading);
+        ray.by_axis(wanted, |order, wanted| {
+            let aim = triangle::Aim::new(ray, order);
             let t = F::triangle(&self.triangles.shapes[i], ray, &aim, wanted);
             nearest = L::select(wanted, t, nearest);
         });
@@ -314,7 +314,7 @@ impl<S: Scalar> Primitives<S> {
         }
         match (&self.tree, &light.bundle) {
             (Some(tree), _) if F::FAITHFUL => ray.by_heading(free, |heading, wanted| {
-                let aim = self.aim(ray, heading);
+                let aim = self.aim(ray, heading.order);
                 tree.visit(ray, heading, wanted, limit, |leaf, reached| {
                     free = free & !(reached & !self.free_in::<L, F>(leaf, ray, &aim, limit, reached));
                     (wanted & free, limit)
@@ -326,7 +326,7 @@ impl<S: Scalar> Primitives<S> {
                     free
                 });
             }
-            _ => self.by_heading::<L, F>(ray, free, |leaf, aim, wanted| {
+            _ => self.by_axis::<L, F>(ray, free, |leaf, aim, wanted| {
                 let reached = wanted & free;
                 free = free & !(reached & !self.free_in::<L, F>(leaf, ray, aim, limit, reached));
             }),

@@ -1,6 +1,6 @@
 //! A ray, and what every shape asks of it.
 
-use crate::lane::{Lane, Scalar};
+use crate::lane::{Lane, Mask, Scalar};
 use crate::vector::Vector;
 
 /// The half line `origin + t direction` for `t > 0`.
@@ -33,11 +33,16 @@ fn longest_axis<L: Lane>(direction: [L; 3]) -> [L::Mask; 3] {
     [is_x, is_y, !is_x & !is_y]
 }
 
+/// The axes, x, y and z being 0, 1 and 2: cyclic, one along which directions are longest last.
+pub(crate) type AxisOrder = [usize; 3];
+
+/// Those for x, y and z.
+const ORDERS: [AxisOrder; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
+
 /// What similar rays have in common: along which axis they are longest, and which way they go.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Heading {
-    /// The axes, x, y and z being 0, 1 and 2: cyclic, the one along which the direction is longest last.
-    pub(crate) order: [usize; 3],
+    pub(crate) order: AxisOrder,
     /// For x, y and z, whether the direction is below 0.
     pub(crate) backward: [bool; 3],
 }
@@ -45,16 +50,28 @@ pub(crate) struct Heading {
 impl Heading {
     #[inline(always)]
     fn of<S: Scalar>(direction: [S; 3]) -> Self {
+        let [x, y, z] = ORDERS;
         let order = match longest_axis(direction) {
-            [true, ..] => [1, 2, 0],
-            [_, true, _] => [2, 0, 1],
-            _ => [0, 1, 2],
+            [true, ..] => x,
+            [_, true, _] => y,
+            _ => z,
         };
         Self { order, backward: direction.map(|d| d.lt(S::literal(0.0))) }
     }
 }
 
 impl<L: Lane> Ray<L> {
+    /// Shows `group` the rays of `wanted` by the axis along which they are longest.
+    #[inline(always)]
+    pub(crate) fn by_axis(&self, wanted: L::Mask, mut group: impl FnMut(AxisOrder, L::Mask)) {
+        for (order, along) in ORDERS.into_iter().zip(longest_axis(self.direction.to_array())) {
+            let alike = wanted & along;
+            if alike.any() {
+                group(order, alike);
+            }
+        }
+    }
+
     /// Shows `group` the rays of `wanted` by their heading: those of a packet of neighbours mostly have one.
     #[inline(always)]
     pub(crate) fn by_heading(&self, wanted: L::Mask, mut group: impl FnMut(Heading, L::Mask)) {

@@ -2,7 +2,7 @@
 
 use super::{SurfacePoint, clearance};
 use crate::lane::{Lane, Mask, Scalar, sign_of_difference};
-use crate::ray::{Heading, Ray, miss};
+use crate::ray::{AxisOrder, Ray, miss};
 use crate::scene;
 use crate::tree::Bounds;
 use crate::vector::Vector;
@@ -41,8 +41,7 @@ impl<L: Lane> Aim<L> {
     }
 
     #[inline(always)]
-    pub(crate) fn new(ray: &Ray<L>, heading: Heading) -> Self {
-        let order = heading.order;
+    pub(crate) fn new(ray: &Ray<L>, order: AxisOrder) -> Self {
         let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
         let [x, y, z] = order.map(|axis| direction[axis]);
         Self { order, origin: order.map(|axis| origin[axis]), shear: [x / z, y / z], along: z }
