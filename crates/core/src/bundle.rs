@@ -20,16 +20,17 @@ pub(crate) struct Bundle<S: Scalar> {
     widening: S,
 }
 
-/// As many cones as fill a register.
+/// Up to eight cones.
 #[derive(Clone, Debug)]
 struct Block<S: Scalar> {
     cones: Vec<Cone<S>>,
     /// The same, each wider by `SPREAD` and by `SLACK`: for rays so close together that one of them stands for all. What
     /// `f32` loses is little beside that.
-    wider: Cone<Register>,
+    wider: Cone<Eight>,
 }
 
-type Register = <f32 as Scalar>::Wide256;
+/// Eight numbers of `f32`, whatever the picture's precision.
+type Eight = <f32 as Scalar>::Wide256;
 
 /// The directions from the point in which a primitive may be.
 #[derive(Clone, Copy, Debug)]
@@ -84,7 +85,7 @@ impl<S: Scalar> Bundle<S> {
             spheres.map(|(center, radius)| Cone::new(point, center, radius)).unzip();
         let nearest = distances.into_iter().fold(f64::INFINITY, f64::min);
         Self {
-            blocks: cones.chunks(Register::LANES).map(Block::new).collect(),
+            blocks: cones.chunks(Eight::LANES).map(Block::new).collect(),
             widening: S::from_f64(2.0 * MARGIN * S::ROUNDOFF / nearest),
         }
     }
@@ -104,12 +105,12 @@ impl<S: Scalar> Bundle<S> {
         let widening = L::splat(self.widening) * length;
         let close = L::literal(spread_cosine()).le(Vector::splat(one).dot(direction));
         let together = !(wanted & !(close & widening.le(L::literal(SLACK)))).any();
-        let register = Vector::splat(Vector::new(x.to_f32(), y.to_f32(), z.to_f32()));
+        let one_in_f32 = Vector::splat(Vector::new(x.to_f32(), y.to_f32(), z.to_f32()));
         let mut first = 0;
         for block in &self.blocks {
             let mut candidates = (1 << block.cones.len()) - 1;
             if together {
-                candidates &= block.wider.holds(register, Lane::literal(0.0)).bits();
+                candidates &= block.wider.holds(one_in_f32, Lane::literal(0.0)).bits();
             }
             while candidates != 0 {
                 let i = candidates.trailing_zeros() as usize;
@@ -145,8 +146,7 @@ impl<S: Scalar> Cone<S> {
 
 impl<S: Scalar> Block<S> {
     fn new(cones: &[Cone<S>]) -> Self {
-        let side_by_side =
-            |number: fn(&Cone<S>) -> f32| Register::from_fn(|i| cones.get(i).map_or(0.0, number));
+        let side_by_side = |number: fn(&Cone<S>) -> f32| Eight::from_fn(|i| cones.get(i).map_or(0.0, number));
         let x = side_by_side(|cone| cone.axis.x.to_f32());
         let y = side_by_side(|cone| cone.axis.y.to_f32());
         let z = side_by_side(|cone| cone.axis.z.to_f32());
@@ -161,7 +161,7 @@ impl<S: Scalar> Block<S> {
             return EVERYTHING;
         }
         let sum_of_angles = cosine * spread_cosine() - (1.0 - cosine * cosine).sqrt() * SPREAD;
-        // The angle between rays so close is known to 13 / `SPREAD` roundings, all else to 20.
+        // The angle between rays so close is known to 13 / `SPREAD` roundings, all else to 20: of `f32`, at worst.
         sum_of_angles - 8.0 * MARGIN * f32::ROUNDOFF
     }
 }
@@ -180,42 +180,41 @@ mod tests {
     use super::*;
     use crate::random::places;
     use std::array::from_fn;
-    use wide::f32x8;
+    use wide::{f32x8, f64x4};
 
     /// Packets of rays next to each other, some closer together than `SPREAD` and some not: whatever the cone of any
     /// ray holds is shown, as if each cone were asked for each ray.
-    #[test]
-    fn no_cone_is_left_out() {
+    fn no_cone_is_left_out<L: Lane>() {
         let mut place = places();
         let (mut together, mut shown) = (0, 0);
         for _ in 0..100_000 {
             let spheres: [_; 11] = from_fn(|_| (place() * 4.0 - 2.0, 0.1 + place().x * 0.6));
-            let bundle = Bundle::<f32>::of(spheres.into_iter(), place());
+            let bundle = Bundle::<L::Scalar>::of(spheres.into_iter(), place());
             let (middle, apart) = ((place() - 0.5).normalize(), 0.05 + place().x * 0.025);
             let aside =
                 |lane: usize| if lane == 0 { DVec3::ZERO } else { (place() - 0.5).normalize() * apart };
             let rays: [DVec3; 8] = from_fn(aside).map(|aside| (middle + aside).normalize());
-            let of = |axis: usize| f32x8::from_fn(|lane| rays[lane][axis] as f32);
+            let of = |axis: usize| L::from_fn(|lane| Scalar::from_f64(rays[lane][axis]));
             let direction = Vector::new(of(0), of(1), of(2));
-            let length = f32x8::splat(place().x as f32 * 20.0);
-            let all = f32x8::first_lanes(8);
+            let length = L::literal(place().x * 20.0);
+            let all = L::first_lanes(L::LANES);
 
             let mut found = Vec::new();
             bundle.met((direction, length), all, |i, met| {
                 found.push((i, met.bits()));
                 all
             });
-            let widening = length * f32x8::splat(bundle.widening);
+            let widening = length * L::splat(bundle.widening);
             let cones = bundle.blocks.iter().flat_map(|block| &block.cones);
             let expected: Vec<(usize, u32)> = (cones.enumerate())
                 .map(|(i, cone)| {
-                    let cone = Cone { axis: Vector::splat(cone.axis), cosine: f32x8::splat(cone.cosine) };
+                    let cone = Cone { axis: Vector::splat(cone.axis), cosine: L::splat(cone.cosine) };
                     (i, cone.holds(direction, widening).bits())
                 })
                 .filter(|&(_, met)| met != 0)
                 .collect();
             assert_eq!(found, expected);
-            together += usize::from(rays.iter().all(|ray| ray.dot(rays[0]) > spread_cosine()));
+            together += usize::from(rays[..L::LANES].iter().all(|ray| ray.dot(rays[0]) > spread_cosine()));
             shown += found.len();
         }
         // Neither nothing nor everything.
@@ -225,20 +224,31 @@ mod tests {
 
     /// A ray at the edge of a cone that its length widens as much as may be, tested by one as far from it as may be and
     /// on the far side.
-    #[test]
-    fn the_widest_cone_holds_the_farthest_ray() {
+    fn the_widest_cone_holds_the_farthest_ray<L: Lane>() {
         for radius in [0.01, 0.1, 0.5, 0.9] {
-            let bundle = Bundle::<f32>::of([(DVec3::Z, radius)].into_iter(), DVec3::ZERO);
-            let edge = (f64::from(bundle.blocks[0].cones[0].cosine) - 0.98 * SLACK).acos();
+            let bundle = Bundle::<L::Scalar>::of([(DVec3::Z, radius)].into_iter(), DVec3::ZERO);
+            let edge = (bundle.blocks[0].cones[0].cosine.to_f64() - 0.98 * SLACK).acos();
             let rays = [edge + 0.999 * SPREAD.asin(), edge].map(|angle| [angle.sin(), 0.0, angle.cos()]);
-            let of = |axis: usize| f32x8::from_fn(|lane| rays[lane.min(1)][axis] as f32);
-            let length = f32x8::splat(0.99 * SLACK as f32 / bundle.widening);
+            let of = |axis: usize| L::from_fn(|lane| Scalar::from_f64(rays[lane.min(1)][axis]));
+            let length = L::literal(0.99 * SLACK / bundle.widening.to_f64());
             let mut found = Vec::new();
-            bundle.met((Vector::new(of(0), of(1), of(2)), length), f32x8::first_lanes(2), |i, met| {
+            bundle.met((Vector::new(of(0), of(1), of(2)), length), L::first_lanes(2), |i, met| {
                 found.push((i, met.bits()));
                 met
             });
             assert_eq!(found, [(0, 0b10)], "radius {radius}");
         }
+    }
+
+    #[test]
+    fn no_cone_is_left_out_in_either_precision() {
+        no_cone_is_left_out::<f32x8>();
+        no_cone_is_left_out::<f64x4>();
+    }
+
+    #[test]
+    fn the_widest_cone_holds_the_farthest_ray_in_either_precision() {
+        the_widest_cone_holds_the_farthest_ray::<f32x8>();
+        the_widest_cone_holds_the_farthest_ray::<f64x4>();
     }
 }

@@ -112,8 +112,8 @@ impl<S: Scalar> Primitives<S> {
         self.tree.as_ref().map(Tree::leaves)
     }
 
-    /// From now on all rays of which the nearest hit is asked have unit direction. No shadow ray asks for triangles by
-    /// axis: where there are enclosures, lights have bundles.
+    /// From now on all rays of which the nearest hit is asked have unit direction. No shadow ray asks
+    /// what it comes near: where there are enclosures, lights have bundles.
     pub(crate) fn enclose_triangles(&mut self, scene: &Scene) {
         self.around_triangles = scene.triangles.iter().map(Enclosure::new).collect();
     }
@@ -152,15 +152,15 @@ impl<S: Scalar> Primitives<S> {
         }
     }
 
-    /// What the shapes of each kind that is there ask of a ray, triangles of one that is longest along the last axis.
+    /// What the shapes of each kind that is there ask of a ray; triangles, if `order` tells the axis along which it is
+    /// longest.
     #[inline(always)]
-    fn aim<L: Lane<Scalar = S>>(&self, ray: &Ray<L>, order: AxisOrder) -> Aim<L> {
+    fn aim<L: Lane<Scalar = S>>(&self, ray: &Ray<L>, order: Option<AxisOrder>) -> Aim<L> {
         Aim {
             sphere: if self.spheres.shapes.is_empty() { sphere::Aim::none() } else { sphere::Aim::new(ray) },
-            triangle: if self.triangles.shapes.is_empty() {
-                triangle::Aim::none()
-            } else {
-                triangle::Aim::new(ray, order)
+            triangle: match order {
+                Some(order) if !self.triangles.shapes.is_empty() => triangle::Aim::new(ray, order),
+                _ => triangle::Aim::none(),
             },
             cylinder: if self.cylinders.shapes.is_empty() {
                 cylinder::Aim::none()
@@ -185,7 +185,7 @@ impl<S: Scalar> Primitives<S> {
         }
         match (&self.tree, from) {
             (Some(tree), _) if F::FAITHFUL => ray.by_heading(wanted, |heading, wanted| {
-                let aim = self.aim(ray, heading.order);
+                let aim = self.aim(ray, Some(heading.order));
                 tree.visit(ray, heading, wanted, nearest.t, |leaf, reached| {
                     self.nearest_in::<L, F>(leaf, ray, &aim, reached, &mut nearest);
                     (wanted, nearest.t)
@@ -205,7 +205,8 @@ impl<S: Scalar> Primitives<S> {
         nearest
     }
 
-    /// Shows `leaf` all bounded primitives: triangles for each axis along which rays are longest, if the formulas ask for it.
+    /// Shows `leaf` all bounded primitives: triangles for each axis along which rays are longest, if the formulas ask for
+    /// it.
     #[inline(always)]
     fn by_axis<L: Lane<Scalar = S>, F: Family>(
         &self,
@@ -215,18 +216,18 @@ impl<S: Scalar> Primitives<S> {
     ) {
         let [triangles, others] = &self.triangles_and_others;
         let empty = Leaf::default();
-        let any_order = self.aim(ray, AxisOrder::default());
+        let others_aim = self.aim(ray, None);
         if *others != empty {
-            leaf(others, &any_order, wanted);
+            leaf(others, &others_aim, wanted);
         }
         if *triangles == empty {
             return;
         }
         if !F::FAITHFUL {
-            return leaf(triangles, &any_order, wanted);
+            return leaf(triangles, &others_aim, wanted);
         }
         ray.by_axis(self.near_triangles(ray, wanted), |order, wanted| {
-            leaf(triangles, &Aim { triangle: triangle::Aim::new(ray, order), ..any_order }, wanted);
+            leaf(triangles, &Aim { triangle: triangle::Aim::new(ray, order), ..others_aim }, wanted);
         });
     }
 
@@ -314,7 +315,7 @@ impl<S: Scalar> Primitives<S> {
         }
         match (&self.tree, &light.bundle) {
             (Some(tree), _) if F::FAITHFUL => ray.by_heading(free, |heading, wanted| {
-                let aim = self.aim(ray, heading.order);
+                let aim = self.aim(ray, Some(heading.order));
                 tree.visit(ray, heading, wanted, limit, |leaf, reached| {
                     free = free & !(reached & !self.free_in::<L, F>(leaf, ray, &aim, limit, reached));
                     (wanted & free, limit)

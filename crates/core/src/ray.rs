@@ -90,3 +90,27 @@ impl<L: Lane> Ray<L> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every ray is in one group, whatever its components: that of the longest, if they are numbers.
+    #[test]
+    fn every_ray_has_one_axis() {
+        let numbers =
+            [0.0, -0.0, 1.0, -1.0, 0.5, 1e-40, f32::MAX, f32::INFINITY, f32::NEG_INFINITY, f32::NAN];
+        for (x, y, z) in (numbers.iter().flat_map(|x| numbers.map(|y| (*x, y))))
+            .flat_map(|(x, y)| numbers.map(|z| (x, y, z)))
+        {
+            let direction = Vector::new(x, y, z);
+            let ray = Ray { origin: Vector::zero(), direction };
+            let mut groups = vec![];
+            ray.by_axis(true, |order, _| groups.push(order));
+            assert_eq!(groups.len(), 1, "{direction:?}: {groups:?}");
+            assert_eq!(groups[0], Heading::of(direction.to_array()).order, "{direction:?}");
+            let [a, b, longest] = groups[0].map(|axis| direction.to_array()[axis].abs());
+            assert!([a, b, longest].iter().any(|c| c.is_nan()) || longest >= f32::max(a, b), "{direction:?}");
+        }
+    }
+}

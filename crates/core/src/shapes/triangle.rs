@@ -19,12 +19,12 @@ pub(crate) struct Triangle<S> {
     reach: Vector<S>,
 }
 
-/// What all triangles ask of rays with one heading: the shear that turns them into the axis along which they are
+/// What all triangles ask of rays that are longest along one axis: the shear that turns them into the axis along which they are
 /// longest. Triangles are then tested in the two other coordinates.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Aim<L> {
     /// The axes in the order in which coordinates are taken.
-    order: [usize; 3],
+    order: AxisOrder,
     /// The rays' origin, in this order.
     origin: [L; 3],
     shear: [L; 2],
