@@ -13,16 +13,16 @@ use glam::DVec3;
 
 /// A cone for each primitive that is not a plane: spheres, triangles, cylinders, each in file order.
 #[derive(Clone, Debug)]
-pub(crate) struct Bundle<S: Scalar> {
+pub(crate) struct Bundle<S> {
     blocks: Vec<Block<S>>,
     /// What a unit of a ray's length adds to its cosine with all axes: its end is known the less exactly, the farther it
     /// is, and this counts the more, the nearer a primitive is to the point.
     widening: S,
 }
 
-/// Up to eight cones.
+/// Eight cones, or fewer in the last block.
 #[derive(Clone, Debug)]
-struct Block<S: Scalar> {
+struct Block<S> {
     cones: Vec<Cone<S>>,
     /// The same, each wider by `SPREAD` and by `SLACK`: for rays so close together that one of them stands for all. What
     /// `f32` loses is little beside that.
@@ -106,8 +106,7 @@ impl<S: Scalar> Bundle<S> {
         let close = L::literal(spread_cosine()).le(Vector::splat(one).dot(direction));
         let together = !(wanted & !(close & widening.le(L::literal(SLACK)))).any();
         let one_in_f32 = Vector::splat(Vector::new(x.to_f32(), y.to_f32(), z.to_f32()));
-        let mut first = 0;
-        for block in &self.blocks {
+        for (number, block) in self.blocks.iter().enumerate() {
             let mut candidates = (1 << block.cones.len()) - 1;
             if together {
                 candidates &= block.wider.holds(one_in_f32, Lane::literal(0.0)).bits();
@@ -119,10 +118,9 @@ impl<S: Scalar> Bundle<S> {
                 let cone = Cone { axis: Vector::splat(cone.axis), cosine: L::splat(cone.cosine) };
                 let met = wanted & cone.holds(direction, widening);
                 if met.any() {
-                    wanted = found(first + i, met);
+                    wanted = found(number * Eight::LANES + i, met);
                 }
             }
-            first += block.cones.len();
         }
     }
 }

@@ -17,7 +17,7 @@ pub(crate) struct Material<S> {
 }
 
 #[derive(Clone, Debug)]
-pub(crate) struct Light<S: Scalar> {
+pub(crate) struct Light<S> {
     pub(crate) position: Vector<S>,
     /// The sum of the magnitudes of its coordinates: rounding errors near it are in proportion.
     pub(crate) reach: S,

@@ -40,7 +40,7 @@ pub(crate) type AxisOrder = [usize; 3];
 const ORDERS: [AxisOrder; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
 
 /// What similar rays have in common: along which axis they are longest, and which way they go.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Heading {
     pub(crate) order: AxisOrder,
     /// For x, y and z, whether the direction is below 0.

@@ -18,7 +18,7 @@ use std::marker::PhantomData;
 
 /// A scene in the precision and with the formulas of a picture, ready for rays.
 #[derive(Debug)]
-pub(crate) struct World<S: Scalar, F> {
+pub(crate) struct World<S, F> {
     pub(crate) primitives: Primitives<S>,
     materials: Vec<Material<S>>,
     pub(crate) lights: Vec<Light<S>>,
@@ -143,7 +143,7 @@ impl<S: Scalar, F: Family> World<S, F> {
         self.mirrored_eyes.get(number as usize).filter(|_| !others.any())?.as_ref()
     }
 
-    /// What is hit: each distinct primitive is looked up once, for all lanes that hit it.
+    /// What is hit by rays of `active`, at least one: each distinct primitive is looked up once, for all lanes that hit it.
     #[inline(always)]
     fn surface<L: Lane<Scalar = S>>(&self, hit: &Hit<L>, ray: &Ray<L>, active: L::Mask) -> Surface<L> {
         let mut surface: Option<Surface<L>> = None;
