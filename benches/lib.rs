@@ -5,8 +5,9 @@ mod probes;
 
 pub use probes::{Kind, Probe, Rays};
 
+use rayweave_contract::Work;
 use rayweave_core::precision::Demand;
-use rayweave_core::{Scene, Work, tracer};
+use rayweave_core::{Scene, tracer};
 use rayweave_scene_file as scene_file;
 use std::path::Path;
 

@@ -1,7 +1,8 @@
 //! Scenes to time rays in: what is there is of one kind, and how many rays a picture takes is known.
 
+use rayweave_contract::{Image, Tile, Work};
 use rayweave_core::scene::{Camera, Cylinder, Light, Material, Plane, RenderSettings, Sphere, Triangle};
-use rayweave_core::{Execution, Image, Precision, Scene, Tile, Work, tracer};
+use rayweave_core::{Execution, Precision, Scene, tracer};
 use rayweave_measure::random::SplitMix64;
 use std::f64::consts::PI;
 use std::num::NonZeroU32;

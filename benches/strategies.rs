@@ -7,7 +7,7 @@
 
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use rayweave_benches::{Load, loads};
-use rayweave_core::{Digest, Image, Plan, ThreadsStart};
+use rayweave_contract::{Digest, Image, Plan, ThreadsStart};
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::thread::available_parallelism;
 use std::time::Duration;

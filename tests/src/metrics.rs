@@ -1,7 +1,7 @@
 //! How far a picture is from the truth, as one would see it: both are clamped to 0..=1 first, in
 //! linear light, as an 8-bit file would do. What a channel has above 1 or below 0 does not count.
 
-use rayweave_core::Image;
+use rayweave_contract::Image;
 
 /// Peak signal-to-noise ratio in dB over all channels, for a peak of 1: infinite for equal
 /// pictures, NaN if a channel is.

@@ -1,6 +1,7 @@
 //! Pictures without any strategy: whatever is true of them is true of the work alone.
 
-use rayweave_core::{Arithmetic, Execution, Image, Lanes, Precision, Rgb, Scene, Search, Tile, Work, tracer};
+use rayweave_contract::{Image, Rgb, Tile, Work};
+use rayweave_core::{Arithmetic, Execution, Lanes, Precision, Scene, Search, tracer};
 use std::num::NonZeroU32;
 
 /// The execution that has nothing of the others': each ray for itself, and against each primitive.

@@ -2,7 +2,7 @@
 //! Images", 2020): what a person sees who flips between two pictures, by the authors' own program.
 
 use nv_flip::{DEFAULT_PIXELS_PER_DEGREE, FlipImageFloat, FlipImageRgb8, magma_lut};
-use rayweave_core::Image;
+use rayweave_contract::Image;
 
 /// From 0, no difference to be seen, to 1 for each pixel, at the distance the authors suggest. The
 /// pictures are compared as they look in an 8-bit file, which is shown as sRGB.

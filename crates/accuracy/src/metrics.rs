@@ -2,7 +2,7 @@
 //! light, as an 8-bit file would do. What a channel has above 1 or below 0 does not count.
 
 use crate::flip;
-use rayweave_core::Image;
+use rayweave_contract::Image;
 
 /// The error of a picture. A channel that is NaN is off by 1, all there is.
 #[derive(Clone, Copy, Debug, PartialEq)]

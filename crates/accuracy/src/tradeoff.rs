@@ -13,7 +13,8 @@ pub use setting::{ARITHMETICS, EXACT, Setting};
 
 use crate::metrics::{Difference, rmse};
 use cost::Parts;
-use rayweave_core::{Digest, Formulas, Image, Scene, Strategy, Work};
+use rayweave_contract::{Digest, Image, Strategy, Work};
+use rayweave_core::{Formulas, Scene};
 use rayweave_measure::compare::{Entry, Executor, Rendering};
 use rayweave_measure::statistics::{median, ratio_interval};
 use rayweave_measure::{Interval, Protocol, Stopwatch};

@@ -1,11 +1,11 @@
 //! The filter `exp(-(dx^2 + dy^2) / 0.64)` over the square out to one pixel from a pixel's centre, as
 //! a sum over samples. It is the product of the same function of each coordinate.
 
-use crate::image::Rgb;
 use crate::lane::Scalar;
 use crate::samples::{Colors, Places};
 use crate::scene::RenderSettings;
 use crate::vector::Vector;
+use rayweave_contract::Rgb;
 
 /// The samples of a pixel, row by row: the same around every pixel's centre.
 #[derive(Clone, Debug)]

@@ -4,7 +4,7 @@
 
 use crate::interrupt::Interrupt;
 use crate::options::{SceneOptions, SharingOption};
-use rayweave_core::Digest;
+use rayweave_contract::Digest;
 use rayweave_measure::compare::{Entry, Executor, Rays, Rendering, Sample};
 use serde::{Deserialize, Serialize};
 use std::env;

@@ -1,10 +1,10 @@
 //! From the options to a scene that is ready to be rendered.
 
 use crate::options::{PrecisionOption, SceneOptions, SwitchOption};
-use rayweave_core::image::ImageError;
+use rayweave_contract::{Image, ImageError, Work};
 use rayweave_core::precision::Demand;
 use rayweave_core::scene::RenderSettings;
-use rayweave_core::{Arithmetic, Execution, Image, Precision, Sampling, Scene, Work, tracer};
+use rayweave_core::{Arithmetic, Execution, Precision, Sampling, Scene, tracer};
 use rayweave_scene_file::{self as scene_file, SceneFile};
 use std::path::Path;
 

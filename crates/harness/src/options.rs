@@ -2,8 +2,9 @@
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
+use rayweave_contract::Strategy;
 use rayweave_core::scene::MAX_ANTIALIASING;
-use rayweave_core::{Formulas, Lanes, Sampling, Search, Strategy};
+use rayweave_core::{Formulas, Lanes, Sampling, Search};
 use rayweave_registry::STRATEGIES;
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::thread::available_parallelism;

@@ -4,7 +4,7 @@ use image::codecs::openexr::OpenExrEncoder;
 use image::codecs::png::PngEncoder;
 use image::codecs::pnm::{PnmEncoder, PnmSubtype, SampleEncoding};
 use image::{ExtendedColorType, ImageEncoder, ImageResult};
-use rayweave_core::Image;
+use rayweave_contract::Image;
 use std::io::Cursor;
 use std::path::Path;
 

@@ -1,7 +1,7 @@
 //! How far it is, for who watches a terminal; nobody else sees anything of it.
 
 use indicatif::{ProgressBar, ProgressStyle};
-use rayweave_core::{Tile, Work};
+use rayweave_contract::{Tile, Work};
 use std::borrow::Cow;
 use std::time::Duration;
 

@@ -251,7 +251,7 @@ fn threads_that_cannot_be_started_are_an_error_that_names_the_strategy() {
     };
     let parallel = rayweave_registry::available()
         .into_iter()
-        .filter(|strategy| strategy.threads_start() != rayweave_core::ThreadsStart::Never);
+        .filter(|strategy| strategy.threads_start() != rayweave_contract::ThreadsStart::Never);
     for strategy in parallel {
         let name = strategy.name();
         // A dozen of them have enough to do not to end before the next is started.

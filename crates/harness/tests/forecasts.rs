@@ -3,7 +3,7 @@
 mod program;
 
 use program::{files_in, folder, json, rayweave, scene};
-use rayweave_core::ThreadsStart;
+use rayweave_contract::ThreadsStart;
 use serde_json::Value;
 use std::fs;
 

@@ -1,7 +1,6 @@
 //! Runs a strategy such that whatever it does wrong is an answer.
 
-use rayweave_core::StrategyError;
-use rayweave_core::strategy::panic_message;
+use rayweave_contract::{StrategyError, panic_message};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// The result of `action`, or why there is none: its error, or a panic that it let through.

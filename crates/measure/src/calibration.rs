@@ -4,8 +4,7 @@ use crate::overhead::{of_pixels, step};
 use crate::sheet::{Columns, Sheet};
 use crate::statistics::lower_quartile;
 use crate::synthetic::Synthetic;
-use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule};
-use rayweave_core::{Renderer, Strategy};
+use rayweave_contract::{Dealing, Delivery, Piece, Renderer, Rule, Strategy};
 use rayweave_predict::{Access, Overheads, simulate};
 use std::num::NonZeroUsize;
 

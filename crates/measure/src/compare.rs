@@ -27,7 +27,7 @@ pub use row::{Figures, OneShot, Role, Row};
 
 use crate::schedule::Protocol;
 use crate::statistics::{Interval, LEAST_VALUES, ratio_interval};
-use rayweave_core::{Digest, Strategy};
+use rayweave_contract::{Digest, Strategy};
 use row::with_figures;
 use std::num::NonZeroUsize;
 use std::time::Duration;

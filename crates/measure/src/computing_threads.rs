@@ -7,8 +7,7 @@
 //! comes only then proves nothing: it may be a thread that was started when another had ended.
 
 use crate::attempt::attempt;
-use rayweave_core::image::ImageError;
-use rayweave_core::{Image, Plan, Strategy, Tile, Work};
+use rayweave_contract::{Image, ImageError, Plan, Strategy, Tile, Work};
 use std::collections::HashSet;
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::sync::{Condvar, Mutex, PoisonError};

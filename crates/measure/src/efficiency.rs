@@ -153,7 +153,7 @@ impl Losses {
 mod tests {
     use super::*;
     use crate::timeline::Piece;
-    use rayweave_core::Area;
+    use rayweave_contract::Area;
 
     const FREE: Cost = Cost { inside_ns: 0.0, outside_ns: 0.0 };
 

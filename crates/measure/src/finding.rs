@@ -1,7 +1,7 @@
 //! What can be wrong with a strategy, told such that its author knows where to look.
 
 use crate::recorder::Computation;
-use rayweave_core::Rgb;
+use rayweave_contract::Rgb;
 use std::fmt;
 
 /// One thing that a check found wrong.
@@ -159,7 +159,7 @@ impl fmt::Display for Color {
 mod tests {
     use super::*;
     use crate::recorder::Thread;
-    use rayweave_core::Area;
+    use rayweave_contract::Area;
 
     fn computation() -> Computation {
         let tile = Area { x: 8, y: 16, width: 8, height: 4 };

@@ -2,8 +2,10 @@
 
 use crate::statistics::{Interval, ratio_interval};
 use crate::stopwatch::nanoseconds;
-use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule, panic_message, render_tile};
-use rayweave_core::{Image, Plan, Renderer, Strategy, StrategyError, ThreadsStart, Work};
+use rayweave_contract::{
+    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart, Work,
+    panic_message, render_tile,
+};
 use std::collections::BTreeMap;
 use std::io;
 use std::sync::{Arc, Mutex, PoisonError};

@@ -10,7 +10,7 @@
 //! * [`machine`]: what was measured on, and with what;
 //! * [`noise`]: what else went on at the time.
 //!
-//! What watches a rendering is a [`Work`](rayweave_core::Work) around a `Work` ([`recorder`],
+//! What watches a rendering is a [`Work`](rayweave_contract::Work) around a `Work` ([`recorder`],
 //! [`timeline`]) or in place of it ([`computing_threads`]): no strategy has a line for any of it.
 
 mod attempt;

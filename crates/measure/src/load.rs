@@ -1,7 +1,6 @@
 //! How a picture's cost lies in it: what any way of dealing it out has to live with.
 
-use rayweave_core::image::ImageError;
-use rayweave_core::{Image, Work};
+use rayweave_contract::{Image, ImageError, Work};
 use std::num::NonZeroU32;
 use std::time::{Duration, Instant};
 
@@ -23,7 +22,7 @@ impl Load {
     pub fn of(work: &dyn Work, width: u32, height: u32, tile: NonZeroU32) -> Result<Self, ImageError> {
         let mut image = Image::new(width, height)?;
         let mut pass = || -> Vec<Duration> {
-            let time = |tile: &mut rayweave_core::Tile<'_>| {
+            let time = |tile: &mut rayweave_contract::Tile<'_>| {
                 let begin = Instant::now();
                 work.render(tile);
                 begin.elapsed()
@@ -71,7 +70,7 @@ impl Load {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rayweave_core::Tile;
+    use rayweave_contract::Tile;
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     fn load(costs: &[u64]) -> Load {

@@ -1,8 +1,10 @@
 //! What each piece of a picture costs, computed alone on one thread.
 
 use crate::statistics::lower_quartile;
-use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule, render_tile};
-use rayweave_core::{Image, Plan, Renderer, Strategy, StrategyError, ThreadsStart, Tile, Work};
+use rayweave_contract::{
+    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart, Tile, Work,
+    render_tile,
+};
 use std::num::NonZeroU32;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;

@@ -1,6 +1,6 @@
 //! What a picture holds before it is rendered, so that a pixel that nobody writes shows itself.
 
-use rayweave_core::{Image, Rgb};
+use rayweave_contract::{Image, Rgb};
 
 /// A quiet NaN whose payload no arithmetic produces.
 const PAYLOAD: u32 = 0x7fc0_dead;

@@ -1,6 +1,6 @@
 //! Who computed what, and how much: a work around a work.
 
-use rayweave_core::{Area, Tile, Work};
+use rayweave_contract::{Area, Tile, Work};
 use std::fmt;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};

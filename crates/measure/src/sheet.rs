@@ -6,7 +6,7 @@
 use crate::attempt::attempt;
 use crate::poison;
 use crate::synthetic::even;
-use rayweave_core::{Image, Renderer, Tile, Work};
+use rayweave_contract::{Image, Renderer, Tile, Work};
 use std::time::Instant;
 
 /// Pixels of the two columns whose difference is divided by that of their lengths.
@@ -86,7 +86,7 @@ impl Columns {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rayweave_core::StrategyError;
+    use rayweave_contract::StrategyError;
 
     /// Draws all but the last so many pixels.
     struct Lazy(usize);

@@ -5,14 +5,13 @@ use crate::compare::{Entry, Executor, Rays, Rendering, Sample};
 use crate::poison;
 use crate::recorder::{Cost, Tally};
 use crate::usage::Usage;
-use rayweave_core::image::ImageError;
-use rayweave_core::{Area, Image, Plan, Work};
+use rayweave_contract::{Area, Image, ImageError, Plan, Work};
 use std::num::NonZeroU32;
 use std::time::{Duration, Instant};
 
 /// The executor of real renderings of one work. Only [`Renderer::render`] is in the render time.
 ///
-/// [`Renderer::render`]: rayweave_core::Renderer::render
+/// [`Renderer::render`]: rayweave_contract::Renderer::render
 pub struct Stopwatch<'a> {
     work: &'a dyn Work,
     tile: NonZeroU32,
@@ -120,8 +119,9 @@ pub(crate) fn nanoseconds(duration: Duration) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule};
-    use rayweave_core::{Renderer, Rgb, Strategy, StrategyError, ThreadsStart, Tile};
+    use rayweave_contract::{
+        Dealing, Delivery, Piece, Renderer, Rgb, Rule, Strategy, StrategyError, ThreadsStart, Tile,
+    };
     use std::num::NonZeroUsize;
     use std::sync::atomic::{AtomicUsize, Ordering};
 

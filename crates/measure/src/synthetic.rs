@@ -1,6 +1,6 @@
 //! Work that costs what is asked for: no scene, nothing shared, nothing in memory.
 
-use rayweave_core::{Rgb, Tile, Work};
+use rayweave_contract::{Rgb, Tile, Work};
 
 /// A busy loop of so many steps at each pixel `(x, y)`, as the function says. A pixel's colour follows from its place
 /// and its steps alone, so that a picture can be verified.
@@ -41,7 +41,7 @@ fn step(mut state: u64) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rayweave_core::Image;
+    use rayweave_contract::Image;
     use std::num::NonZeroU32;
 
     /// Catches colours that depend on the tile, and steps or places that make no difference.

@@ -7,7 +7,7 @@ mod cost;
 
 pub use cost::Cost;
 
-use rayweave_core::{Area, Tile, Work};
+use rayweave_contract::{Area, Tile, Work};
 use std::cell::RefCell;
 use std::fmt;
 use std::mem;

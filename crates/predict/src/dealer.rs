@@ -1,6 +1,6 @@
 //! Who gets which pieces: each [`Dealing`] as an answer to a thread that asks for more.
 
-use rayweave_core::strategy::Dealing;
+use rayweave_contract::Dealing;
 use std::collections::VecDeque;
 use std::ops::Range;
 

@@ -4,7 +4,7 @@
 //! picture that pieces are sent to; whoever waits for a lock gets it in the order of asking; memory has any bandwidth.
 
 use crate::dealer::{Dealer, Source};
-use rayweave_core::strategy::{Delivery, Rule};
+use rayweave_contract::{Delivery, Rule};
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
 use std::ops::Range;

@@ -2,7 +2,7 @@
 //! have to say twice.
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use rayweave_core::StrategyError;
+use rayweave_contract::StrategyError;
 use std::io;
 use std::num::NonZeroUsize;
 

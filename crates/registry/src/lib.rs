@@ -1,6 +1,6 @@
 //! The one place that names every strategy. Lists, help, tests, benches and reports follow from it.
 
-use rayweave_core::Strategy;
+use rayweave_contract::Strategy;
 
 /// Every strategy, in the order of every list: the reference first, then from the simplest on.
 pub static STRATEGIES: &[&dyn Strategy] = &[

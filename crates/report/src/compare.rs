@@ -13,7 +13,8 @@ pub use baseline::Baseline;
 pub use scenes::ScenesReport;
 pub(crate) use table::complaint;
 
-use rayweave_core::{Formulas, Sampling, Search, ThreadsStart};
+use rayweave_contract::ThreadsStart;
+use rayweave_core::{Formulas, Sampling, Search};
 use rayweave_measure::{Comparison, Interval, Machine, Noise, Row};
 
 /// What was rendered, and how.

@@ -10,8 +10,7 @@ mod timeline;
 mod trace;
 
 use plotters::style::RGBColor;
-use rayweave_core::Image;
-use rayweave_core::image::ImageError;
+use rayweave_contract::{Image, ImageError};
 use rayweave_measure::efficiency::Cause;
 use rayweave_measure::explanation::{Explanation, Row};
 use rayweave_measure::recorder::Cost;

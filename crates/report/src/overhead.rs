@@ -3,7 +3,7 @@
 use crate::json::{self, Ratio};
 use crate::machine::{self, Facts};
 use crate::{noise, style};
-use rayweave_core::strategy::Piece;
+use rayweave_contract::Piece;
 use rayweave_measure::overhead::{Figures, LARGEST_SIDE, PIXEL_NS, Row, Study, TASKS, TILE};
 use rayweave_measure::{Interval, Machine, Noise};
 use serde::Serialize;

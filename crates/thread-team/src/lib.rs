@@ -5,8 +5,7 @@
 //! thread less to start, but Linux often leaves a new thread behind the one that started it, on the same core, until its
 //! scheduler looks again some milliseconds later.
 
-use rayweave_core::strategy::render_tile;
-use rayweave_core::{StrategyError, Tile, Work};
+use rayweave_contract::{StrategyError, Tile, Work, render_tile};
 use std::iter;
 use std::num::NonZeroUsize;
 use std::ops::Range;

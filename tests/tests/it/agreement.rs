@@ -1,7 +1,8 @@
 //! The tracer against the image model: an independent `f64` rendering, sample by sample, of scenes
 //! that neither was written for.
 
-use rayweave_core::{Image, Plan, Precision, Scene, tracer};
+use rayweave_contract::{Image, Plan};
+use rayweave_core::{Precision, Scene, tracer};
 use rayweave_tests::{metrics, model, random_scene::random_scene};
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::path::Path;

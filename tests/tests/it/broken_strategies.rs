@@ -1,8 +1,10 @@
 //! Deliberately broken strategies, each of which `check` has to catch with the right pixel named.
 
 use crate::gradient::{Gradient, PATIENCE, Panics, threads, tile};
-use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule, render_tile};
-use rayweave_core::{Area, Image, Plan, Renderer, Rgb, Strategy, StrategyError, ThreadsStart, Tile, Work};
+use rayweave_contract::{
+    Area, Dealing, Delivery, Image, Piece, Plan, Renderer, Rgb, Rule, Strategy, StrategyError, ThreadsStart,
+    Tile, Work, render_tile,
+};
 use rayweave_measure::{Case, Check, Fault, Finding};
 use rayweave_registry::reference;
 use std::panic::resume_unwind;

@@ -5,7 +5,8 @@
 //! change. To print new ones, run `cargo test -p rayweave-tests golden`: the failure shows
 //! the whole table as it has to stand here.
 
-use rayweave_core::{Arithmetic, Formulas, Image, Precision, Sampling, Scene, tracer};
+use rayweave_contract::Image;
+use rayweave_core::{Arithmetic, Formulas, Precision, Sampling, Scene, tracer};
 use rayweave_tests::{picture, random_scene::random_scene, scenes};
 
 const WIDTH: u32 = 100;

@@ -1,6 +1,6 @@
 //! A work that strategies are tried with, and how.
 
-use rayweave_core::{Rgb, Tile, Work};
+use rayweave_contract::{Rgb, Tile, Work};
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::panic::resume_unwind;
 use std::time::Duration;

@@ -2,8 +2,9 @@
 //! right in the precision that is chosen for it.
 
 use glam::DVec3;
+use rayweave_contract::Image;
 use rayweave_core::precision::Demand;
-use rayweave_core::{Image, Precision, Scene};
+use rayweave_core::{Precision, Scene};
 use rayweave_tests::transform::{enlarged, moved};
 use rayweave_tests::{metrics, model, picture, scenes};
 

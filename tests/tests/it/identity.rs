@@ -4,7 +4,8 @@
 //! `broken_strategies` shows that `check` catches what is wrong; this is the proof for the real
 //! tracer, against pictures that no strategy had a hand in.
 
-use rayweave_core::{Area, Image, Plan, Precision, Rgb, Scene, Tile, Work, tracer};
+use rayweave_contract::{Area, Image, Plan, Rgb, Tile, Work};
+use rayweave_core::{Precision, Scene, tracer};
 use rayweave_tests::picture::pixel_by_pixel;
 use rayweave_tests::{random_scene::random_scene, scenes};
 use std::num::{NonZeroU32, NonZeroUsize};

@@ -1,7 +1,8 @@
 //! What a picture does not depend on: the unit of length, and which hand is the right one. Neither
 //! change rounds anything, so that not a bit of the picture may change.
 
-use rayweave_core::{Image, Precision, Scene};
+use rayweave_contract::Image;
+use rayweave_core::{Precision, Scene};
 use rayweave_tests::picture::of_scene;
 use rayweave_tests::random_scene::random_scene;
 use rayweave_tests::scenes;

@@ -1,7 +1,7 @@
 //! Strategies have to pass every check, and to survive work that panics.
 
 use crate::gradient::{Gradient, PATIENCE, Panics, threads, tile};
-use rayweave_core::{Image, Plan, Strategy, StrategyError, ThreadsStart, Tile, Work};
+use rayweave_contract::{Image, Plan, Strategy, StrategyError, ThreadsStart, Tile, Work};
 use rayweave_measure::{Case, Check};
 use rayweave_registry::{available, reference};
 use std::num::NonZeroUsize;

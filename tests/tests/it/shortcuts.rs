@@ -6,8 +6,9 @@ use glam::DVec3;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
+use rayweave_contract::Image;
 use rayweave_core::scene::{Camera, Cylinder, Light, Material, Plane, RenderSettings, Sphere, Triangle};
-use rayweave_core::{Execution, Image, Lanes, Precision, Scene, Search};
+use rayweave_core::{Execution, Lanes, Precision, Scene, Search};
 use rayweave_tests::picture::{difference, in_tiles, plain};
 use rayweave_tests::transform::{enlarged, moved};
 

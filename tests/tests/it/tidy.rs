@@ -34,14 +34,25 @@ fn manifests() -> Vec<(String, String)> {
     manifests
 }
 
-/// `core` starts no thread, opens no file, reads no clock, prints nothing: the contract's half that
-/// has to be the same everywhere.
+/// Neither the contract nor the tracer starts a thread, opens a file, reads a clock or prints:
+/// both have to be the same everywhere.
 #[test]
-fn core_touches_nothing_of_the_machine() {
-    for (name, text) in files("crates/core/src", ".rs") {
+fn contract_and_core_touch_nothing_of_the_machine() {
+    let sources = ["crates/contract/src", "crates/core/src"].map(|folder| files(folder, ".rs"));
+    for (name, text) in sources.into_iter().flatten() {
         for word in ["thread::", "fs::", "time::", "net::", "env::", "process::", "println!", "mul_add"] {
             assert!(!text.contains(word), "{name}: {word}");
         }
+    }
+}
+
+/// Strategies, simulation and measurement know the contract, not the tracer.
+#[test]
+fn nothing_between_contract_and_accuracy_depends_on_the_tracer() {
+    let below = ["contract", "thread-team", "rayon-pool", "strategies", "registry", "predict", "measure"];
+    for (name, text) in manifests() {
+        let apart = below.iter().any(|folder| name.starts_with(&format!("crates/{folder}/")));
+        assert!(!(apart && text.contains("rayweave-core")), "{name}: depends on the tracer");
     }
 }
 

@@ -3,7 +3,8 @@
 
 use rayweave_accuracy::Difference;
 use rayweave_accuracy::tradeoff::{Experiment, Reference, Row, Setting, Study};
-use rayweave_core::{Image, Sampling, Scene, Work};
+use rayweave_contract::{Image, Work};
+use rayweave_core::{Sampling, Scene};
 use rayweave_measure::Protocol;
 use rayweave_tests::{metrics, model, picture, scenes};
 use std::time::Duration;

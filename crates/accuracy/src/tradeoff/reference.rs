@@ -2,7 +2,8 @@
 
 use super::setting::{EXACT, Setting};
 use crate::metrics::rmse;
-use rayweave_core::{Image, Sampling, Scene, Work};
+use rayweave_contract::{Image, Work};
+use rayweave_core::{Sampling, Scene};
 
 /// The truth, and how true it is.
 #[derive(Clone, Debug)]

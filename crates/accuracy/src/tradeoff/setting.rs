@@ -1,7 +1,8 @@
 //! The knobs that trade speed for error, and which positions of them are tried.
 
+use rayweave_contract::Work;
 use rayweave_core::scene::{RenderSettings, SceneError};
-use rayweave_core::{Arithmetic, Formulas, Precision, Sampling, Scene, Work, tracer};
+use rayweave_core::{Arithmetic, Formulas, Precision, Sampling, Scene, tracer};
 use std::fmt;
 
 /// One position of every knob.

@@ -7,7 +7,7 @@ use crate::options::{
 use crate::output::{PendingFile, distinct_files};
 use crate::{Outcome, print, progress};
 use clap::Args;
-use rayweave_core::Strategy;
+use rayweave_contract::Strategy;
 use rayweave_measure::check::{Case, Check, Verdict};
 use rayweave_measure::computing_threads::TIMEOUT;
 use rayweave_measure::machine::Machine;

@@ -5,7 +5,7 @@ use crate::output::PendingFile;
 use crate::watched::watched;
 use crate::{Outcome, print};
 use clap::Args;
-use rayweave_core::Strategy;
+use rayweave_contract::Strategy;
 use rayweave_measure::Protocol;
 use rayweave_measure::overhead::Overhead;
 use rayweave_report::overhead::Report;

@@ -8,7 +8,7 @@ use crate::output::{PendingFile, distinct_files};
 use crate::watched::watched;
 use crate::{Outcome, print};
 use clap::Args;
-use rayweave_core::Strategy;
+use rayweave_contract::Strategy;
 use rayweave_measure::Protocol;
 use rayweave_measure::forecast::{Question, Stage};
 use rayweave_report::forecast::Report;

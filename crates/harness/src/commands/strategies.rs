@@ -1,7 +1,7 @@
 //! `rayweave strategies`: what there is.
 
 use crate::{Outcome, print};
-use rayweave_core::{Plan, ThreadsStart};
+use rayweave_contract::{Plan, ThreadsStart};
 use rayweave_registry::STRATEGIES;
 use std::num::{NonZeroU32, NonZeroUsize};
 

@@ -2,8 +2,7 @@
 
 use super::{Entry, Rays, Rendering, Sample};
 use crate::statistics::{Interval, efficiency, karp_flatt, median, ratio_interval};
-use rayweave_core::strategy::Rule;
-use rayweave_core::{Digest, ThreadsStart};
+use rayweave_contract::{Digest, Rule, ThreadsStart};
 
 /// What a row is there for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

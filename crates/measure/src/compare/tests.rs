@@ -1,8 +1,7 @@
 //! The protocol's logic, with a clock and renderings that are made up.
 
 use super::*;
-use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule};
-use rayweave_core::{Image, Plan, Renderer, StrategyError, ThreadsStart};
+use rayweave_contract::{Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, StrategyError, ThreadsStart};
 use std::cell::RefCell;
 
 /// Never asked to render: the executor makes up what it would do.

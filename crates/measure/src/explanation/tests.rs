@@ -2,8 +2,7 @@
 
 use super::*;
 use crate::timeline::{Lane, Piece};
-use rayweave_core::strategy::{Dealing, Delivery, Rule};
-use rayweave_core::{Area, Renderer, StrategyError, ThreadsStart, Tile, strategy};
+use rayweave_contract::{Area, Dealing, Delivery, Renderer, Rule, StrategyError, ThreadsStart, Tile};
 use std::time::Duration;
 
 const SIDE: NonZeroU32 = NonZeroU32::new(2).expect("not 0");
@@ -44,7 +43,7 @@ impl Strategy for Obedience {
     }
 
     fn rule(&self) -> Rule {
-        Rule { piece: strategy::Piece::Tile, dealing: Dealing::Equal, delivery: Delivery::InPlace }
+        Rule { piece: rayweave_contract::Piece::Tile, dealing: Dealing::Equal, delivery: Delivery::InPlace }
     }
 
     fn prepare(&self, _: Plan) -> Result<Box<dyn Renderer>, StrategyError> {

@@ -2,7 +2,7 @@
 
 use super::{Lane, TimeRecorder};
 use crate::statistics::median;
-use rayweave_core::{Tile, Work};
+use rayweave_contract::{Tile, Work};
 use std::time::Instant;
 
 /// What the recording of a piece adds to a rendering, in nanoseconds.

@@ -1,6 +1,6 @@
 use super::*;
 use proptest::prelude::*;
-use rayweave_core::strategy::{Dealing, Piece};
+use rayweave_contract::{Dealing, Piece};
 
 /// The kind of piece is the caller's matter: it shows in the costs.
 fn rule(dealing: Dealing, delivery: Delivery) -> Rule {

@@ -3,7 +3,7 @@
 use super::table::label;
 use super::{Report, csv, json, markdown, scene_file};
 use crate::{machine, style};
-use rayweave_core::strategy::{Dealing, Piece};
+use rayweave_contract::{Dealing, Piece};
 use rayweave_measure::compare::{Role, Row};
 use rayweave_measure::{Interval, Load};
 

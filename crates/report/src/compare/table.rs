@@ -2,7 +2,8 @@
 
 use super::{BothReport, Report, Subject, baseline, search};
 use crate::{machine, noise, style};
-use rayweave_core::{Formulas, Sampling, Search, ThreadsStart};
+use rayweave_contract::ThreadsStart;
+use rayweave_core::{Formulas, Sampling, Search};
 use rayweave_measure::Comparison;
 use rayweave_measure::compare::{Rays, Role, Row};
 

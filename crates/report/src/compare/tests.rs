@@ -2,8 +2,7 @@
 //! wrong picture, and one whose threads could not be started. And of two that were measured together.
 
 use super::*;
-use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule};
-use rayweave_core::{Digest, Image};
+use rayweave_contract::{Dealing, Delivery, Digest, Image, Piece, Rule};
 use rayweave_measure::Interval;
 use rayweave_measure::compare::{Figures, OneShot, Rays, Role, Sample};
 use std::time::Duration;

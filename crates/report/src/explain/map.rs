@@ -2,7 +2,7 @@
 
 use super::color;
 use plotters::prelude::*;
-use rayweave_core::{Area, Image};
+use rayweave_contract::{Area, Image};
 use rayweave_measure::explanation::Row;
 use rayweave_measure::timeline::{Piece, Timeline};
 

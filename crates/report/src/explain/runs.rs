@@ -1,6 +1,6 @@
 //! A time line short enough to look at: single pixels, one after the other, become runs.
 
-use rayweave_core::Area;
+use rayweave_contract::Area;
 use rayweave_measure::timeline::{Lane, Piece};
 
 /// A piece, or pixels that a thread computed from left to right without a long gap.

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::compare::tests::noise;
-use rayweave_core::Area;
+use rayweave_contract::Area;
 use rayweave_measure::Interval;
 use rayweave_measure::efficiency::{Account, Losses};
 use rayweave_measure::timeline::{self, Piece};

@@ -1,7 +1,6 @@
 use super::*;
 use crate::compare::tests::noise;
-use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule};
-use rayweave_core::{Image, ThreadsStart};
+use rayweave_contract::{Dealing, Delivery, Image, Piece, Rule, ThreadsStart};
 use rayweave_measure::compare::{Figures, Role, Row};
 use rayweave_measure::forecast::{Curve, Point};
 use rayweave_measure::{Comparison, Interval};

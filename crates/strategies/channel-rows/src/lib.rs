@@ -8,8 +8,10 @@
 //! * **When it is right**: when results must not be written in place: they are of a size that nobody
 //!   knows beforehand, or go to a file or a window that one thread owns.
 
-use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule};
-use rayweave_core::{Image, Plan, Renderer, Rgb, Strategy, StrategyError, ThreadsStart, Tile, Work};
+use rayweave_contract::{
+    Dealing, Delivery, Image, Piece, Plan, Renderer, Rgb, Rule, Strategy, StrategyError, ThreadsStart, Tile,
+    Work,
+};
 use rayweave_thread_team as thread_team;
 use std::iter;
 use std::num::NonZeroUsize;

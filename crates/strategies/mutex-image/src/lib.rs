@@ -10,8 +10,9 @@
 //!   shows which of its two mistakes costs more.
 
 use parking_lot::Mutex;
-use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule};
-use rayweave_core::{Image, Plan, Renderer, Strategy, StrategyError, ThreadsStart, Tile, Work};
+use rayweave_contract::{
+    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart, Tile, Work,
+};
 use rayweave_thread_team as thread_team;
 use std::num::NonZeroUsize;
 

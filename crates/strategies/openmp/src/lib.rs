@@ -16,8 +16,9 @@
 //! error where `OMP_THREAD_LIMIT` is lower. Built without OpenMP these strategies are unavailable, and say
 //! what was missing.
 
-use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule};
-use rayweave_core::{Plan, Renderer, Strategy, StrategyError, ThreadsStart};
+use rayweave_contract::{
+    Dealing, Delivery, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart,
+};
 
 #[cfg(openmp)]
 #[allow(unsafe_code)] // To call C.

@@ -2,7 +2,7 @@
 
 use crate::{Schedule, ffi};
 use parking_lot::Mutex;
-use rayweave_core::{Image, Plan, Renderer, StrategyError, Tile, Work};
+use rayweave_contract::{Image, Plan, Renderer, StrategyError, Tile, Work};
 use rayweave_thread_team::{self as thread_team, Team};
 use std::ffi::c_int;
 use std::io;

@@ -12,8 +12,10 @@
 
 use paralight::prelude::*;
 use paralight::threads::ThreadPool;
-use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule, render_tile};
-use rayweave_core::{Image, Plan, Renderer, Strategy, StrategyError, ThreadsStart, Work};
+use rayweave_contract::{
+    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart, Work,
+    render_tile,
+};
 use rayweave_thread_team as thread_team;
 use std::num::NonZeroU32;
 

@@ -14,8 +14,10 @@
 
 use rayon::ThreadPool;
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
-use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule, render_tile};
-use rayweave_core::{Image, Plan, Renderer, Strategy, StrategyError, ThreadsStart, Work};
+use rayweave_contract::{
+    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart, Work,
+    render_tile,
+};
 use std::num::NonZeroU32;
 
 const NAME: &str = "rayon-tiles";

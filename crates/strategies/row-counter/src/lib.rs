@@ -11,8 +11,9 @@
 //! own, which nobody else ever asks for: what that costs is the price of safe Rust here.
 
 use parking_lot::Mutex;
-use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule};
-use rayweave_core::{Image, Plan, Renderer, Strategy, StrategyError, ThreadsStart, Tile, Work};
+use rayweave_contract::{
+    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart, Tile, Work,
+};
 use rayweave_thread_team as thread_team;
 use std::iter;
 use std::num::NonZeroUsize;

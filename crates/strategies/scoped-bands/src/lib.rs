@@ -11,8 +11,9 @@
 //! `split_off_mut` hands each thread the rows that it alone may write, so the compiler has proved that
 //! no lock is needed. A band that has begun is computed to its end, even when another one has failed.
 
-use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule};
-use rayweave_core::{Image, Plan, Renderer, Strategy, StrategyError, ThreadsStart, Tile, Work};
+use rayweave_contract::{
+    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart, Tile, Work,
+};
 use rayweave_thread_team as thread_team;
 use std::num::NonZeroUsize;
 

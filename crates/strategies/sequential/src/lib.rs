@@ -6,8 +6,10 @@
 //! * **When it is right**: for a picture that is done sooner than a thread is started (tens of
 //!   microseconds), or when the cores are busy with other pictures already.
 
-use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule, render_tile};
-use rayweave_core::{Image, Plan, Renderer, Strategy, StrategyError, ThreadsStart, Work};
+use rayweave_contract::{
+    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart, Work,
+    render_tile,
+};
 use std::num::NonZeroU32;
 
 const NAME: &str = "sequential";

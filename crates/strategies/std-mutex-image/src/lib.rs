@@ -8,8 +8,9 @@
 //!   `std::mutex` would be rewritten to it, and to show in one table whether the choice of a lock is
 //!   worth a thought.
 
-use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule};
-use rayweave_core::{Image, Plan, Renderer, Strategy, StrategyError, ThreadsStart, Tile, Work};
+use rayweave_contract::{
+    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart, Tile, Work,
+};
 use rayweave_thread_team as thread_team;
 use std::num::NonZeroUsize;
 use std::sync::{Mutex, PoisonError};

@@ -12,8 +12,9 @@
 //! are written without a lock, and the compiler has proved that they may be.
 
 use crossbeam::queue::ArrayQueue;
-use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule};
-use rayweave_core::{Image, Plan, Renderer, Strategy, StrategyError, ThreadsStart, Work};
+use rayweave_contract::{
+    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart, Work,
+};
 use rayweave_thread_team as thread_team;
 use std::iter;
 

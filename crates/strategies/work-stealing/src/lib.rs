@@ -13,8 +13,9 @@
 //! leaves too early: then fewer threads share the rest, and nothing is lost.
 
 use crossbeam::deque::{Steal, Stealer, Worker};
-use rayweave_core::strategy::{Dealing, Delivery, Piece, Rule};
-use rayweave_core::{Image, Plan, Renderer, Strategy, StrategyError, ThreadsStart, Tile, Work};
+use rayweave_contract::{
+    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart, Tile, Work,
+};
 use rayweave_thread_team as thread_team;
 
 const NAME: &str = "work-stealing";

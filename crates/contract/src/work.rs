@@ -1,6 +1,6 @@
 //! What is computed: a pure function that fills any tile of a picture.
 
-use crate::image::Tile;
+use crate::tile::Tile;
 
 /// A pure function from a pixel's position to its colour, evaluated a tile at a time.
 ///
