@@ -1,7 +1,7 @@
 //! `cargo bench --bench kernels`: what a ray costs, on one thread.
 //!
-//! A bench is called `scene/formulas/precision/lanes`, so criterion's filter picks:
-//! `cargo bench --bench kernels -- spheres/robust/f32`. The throughput is in rays, in `filter` in pixels; one
+//! A bench is called `scene/formulas/precision/lanes`, so criterion's filter picks: `cargo bench
+//! --bench kernels -- spheres/robust/f32`. The throughput is in rays, in `filter` in pixels; one
 //! over it is the time of one. What is in each group:
 //!
 //! | group | rays | a ray tries |
@@ -13,12 +13,14 @@
 //! | `tree of N mirrors` | these, and from each hit one in a direction of its own | what the tree leaves |
 //! | `filter` | of the scene `room.toml`, by kind of anti-aliasing | what the search leaves |
 //!
-//! A ray's time has the shading of its hit in it. Criterion measures one bench after the other, and the
-//! machine's clock and its other processes change meanwhile: for counts that repeat see `scripts/instructions`.
+//! A ray's time has the shading of its hit in it. Criterion measures one bench after the other, and
+//! the machine's clock and its other processes change meanwhile: for counts that repeat see
+//! `scripts/instructions`.
 
 use criterion::measurement::WallTime;
 use criterion::{
-    BenchmarkGroup, BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main,
+    BenchmarkGroup, BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group,
+    criterion_main,
 };
 use rayweave_benches::{Kind, Probe, Rays, scene};
 use rayweave_core::scene::RenderSettings;
@@ -35,11 +37,19 @@ fn kinds(criterion: &mut Criterion) {
 }
 
 fn shadows(criterion: &mut Criterion) {
-    // No shadows of planes: they hide no light from what is on the eye's side of them, and no ray asks.
+    // No shadows of planes: they hide no light from what is on the eye's side of them, and no ray
+    // asks.
     for kind in [Kind::Spheres, Kind::Triangles, Kind::Cylinders] {
         let name = format!("shadows of {}", kind.name());
         let probe = Probe::of(kind, Rays::AndShadows);
-        bench_rays(criterion, &name, &probe, Rays::AndShadows, &[Formulas::Robust], Search::Exhaustive);
+        bench_rays(
+            criterion,
+            &name,
+            &probe,
+            Rays::AndShadows,
+            &[Formulas::Robust],
+            Search::Exhaustive,
+        );
     }
 }
 
@@ -47,7 +57,14 @@ fn trees(criterion: &mut Criterion) {
     for (rays, what) in [(Rays::FromEye, "spheres"), (Rays::AndMirrored, "mirrors")] {
         for count in [1_000, 100_000] {
             let name = format!("tree of {count} {what}");
-            bench_rays(criterion, &name, &Probe::cloud(count, rays), rays, &[Formulas::Robust], Search::Auto);
+            bench_rays(
+                criterion,
+                &name,
+                &Probe::cloud(count, rays),
+                rays,
+                &[Formulas::Robust],
+                Search::Auto,
+            );
         }
     }
 }
@@ -105,7 +122,12 @@ fn group<'a>(criterion: &'a mut Criterion, name: &str) -> BenchmarkGroup<'a, Wal
 }
 
 /// One bench for each number of lanes.
-fn bench_lanes(group: &mut BenchmarkGroup<'_, WallTime>, name: &str, probe: &Probe, execution: Execution) {
+fn bench_lanes(
+    group: &mut BenchmarkGroup<'_, WallTime>,
+    name: &str,
+    probe: &Probe,
+    execution: Execution,
+) {
     let mut expected = None;
     for lanes in Lanes::ALL {
         let count = lanes.count(execution.arithmetic.precision);

@@ -1,5 +1,5 @@
-//! What the benches render: two loads to be spread, one even, one with nearly all of its cost in a corner; and
-//! [probes](Probe), scenes whose rays are counted.
+//! What the benches render: two loads to be spread, one even, one with nearly all of its cost in a
+//! corner; and [probes](Probe), scenes whose rays are counted.
 
 mod probes;
 
@@ -46,7 +46,7 @@ pub fn scene(file: &str) -> Scene {
 
 fn load(name: &'static str, file: &str, (width, height): (u32, u32)) -> Load {
     let scene = scene(file);
-    let work =
-        tracer(&scene, width, height, Demand::of(&scene).precision()).unwrap_or_else(|e| panic!("{e}"));
+    let work = tracer(&scene, width, height, Demand::of(&scene).precision())
+        .unwrap_or_else(|e| panic!("{e}"));
     Load { name, width, height, work }
 }

@@ -1,7 +1,10 @@
-//! Scenes to time rays in: what is there is of one kind, and how many rays a picture takes is known.
+//! Scenes to time rays in: what is there is of one kind, and how many rays a picture takes is
+//! known.
 
 use rayweave_contract::{Image, Tile, Work};
-use rayweave_core::scene::{Camera, Cylinder, Light, Material, Plane, RenderSettings, Sphere, Triangle};
+use rayweave_core::scene::{
+    Camera, Cylinder, Light, Material, Plane, RenderSettings, Sphere, Triangle,
+};
 use rayweave_core::{Execution, Precision, Scene, tracer};
 use rayweave_measure::random::SplitMix64;
 use std::f64::consts::PI;
@@ -15,8 +18,8 @@ pub struct Probe {
     scene: Scene,
     width: u32,
     height: u32,
-    /// Of its tiles one in so many is rendered: rays are as close to each other as in the whole picture, at a part
-    /// of its time.
+    /// Of its tiles one in so many is rendered: rays are as close to each other as in the whole
+    /// picture, at a part of its time.
     one_tile_in: usize,
 }
 
@@ -67,8 +70,8 @@ impl Probe {
         Self::small(Rays::FromEye)
     }
 
-    /// Eight primitives of one kind beside each other, which fill 40 to 85 % of the picture: planes all of it, as the
-    /// walls of a tunnel.
+    /// Eight primitives of one kind beside each other, which fill 40 to 85 % of the picture: planes
+    /// all of it, as the walls of a tunnel.
     #[must_use]
     pub fn of(kind: Kind, rays: Rays) -> Self {
         let mut probe = Self::small(rays);
@@ -80,14 +83,25 @@ impl Probe {
                 Kind::Planes => {
                     let (sine, cosine) = (PI * (f64::from(number) + 0.5) / 4.0).sin_cos();
                     let (point, normal) = ([3.0 * cosine, 3.0 * sine, 0.0], [cosine, sine, 0.0]);
-                    scene.planes.push(Plane { point: point.into(), normal: normal.into(), material: 0 });
+                    scene.planes.push(Plane {
+                        point: point.into(),
+                        normal: normal.into(),
+                        material: 0,
+                    });
                 }
                 Kind::Spheres => {
-                    scene.spheres.push(Sphere { center: [x, y, 0.0].into(), radius: 0.9, material: 0 });
+                    scene.spheres.push(Sphere {
+                        center: [x, y, 0.0].into(),
+                        radius: 0.9,
+                        material: 0,
+                    });
                 }
                 Kind::Triangles => {
-                    let corners = [[x - 0.9, y - 0.9, 0.3], [x + 0.9, y - 0.9, -0.3], [x, y + 0.9, 0.0]];
-                    scene.triangles.push(Triangle { vertices: corners.map(Into::into), material: 0 });
+                    let corners =
+                        [[x - 0.9, y - 0.9, 0.3], [x + 0.9, y - 0.9, -0.3], [x, y + 0.9, 0.0]];
+                    scene
+                        .triangles
+                        .push(Triangle { vertices: corners.map(Into::into), material: 0 });
                 }
                 Kind::Cylinders => {
                     let (bottom, top) = ([x, y - 0.9, 0.0].into(), [x, y + 0.9, 0.0].into());
@@ -98,8 +112,8 @@ impl Probe {
         probe
     }
 
-    /// Spheres anywhere in a cube, all of it in the picture. The more, the smaller: a ray meets as many of them
-    /// whatever their number.
+    /// Spheres anywhere in a cube, all of it in the picture. The more, the smaller: a ray meets as
+    /// many of them whatever their number.
     #[must_use]
     pub fn cloud(count: u32, rays: Rays) -> Self {
         let mut scene = scene(26.0, 1.2, rays);
@@ -158,7 +172,8 @@ impl Probe {
         areas.iter().map(|area| u64::from(area.width) * u64::from(area.height)).sum()
     }
 
-    /// The number of pixels in these tiles whose first ray hits something. It is rendered once to count them.
+    /// The number of pixels in these tiles whose first ray hits something. It is rendered once to
+    /// count them.
     #[must_use]
     pub fn hits(&self) -> u64 {
         let work = self.work(Precision::F32);

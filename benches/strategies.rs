@@ -5,7 +5,9 @@
 //! Criterion measures one bench after the other: to compare strategies with intervals on the
 //! ratio, in interleaved rounds, run `rayweave compare`.
 
-use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
+use criterion::{
+    BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main,
+};
 use rayweave_benches::{Load, loads};
 use rayweave_contract::{Digest, Image, Plan, ThreadsStart};
 use std::num::{NonZeroU32, NonZeroUsize};
@@ -25,7 +27,10 @@ fn strategies(criterion: &mut Criterion) {
         group.throughput(Throughput::Elements(u64::from(load.width) * u64::from(load.height)));
         // A rendering takes long: one a sample.
         group.sampling_mode(SamplingMode::Flat);
-        group.sample_size(10).warm_up_time(Duration::from_secs(1)).measurement_time(Duration::from_secs(5));
+        group
+            .sample_size(10)
+            .warm_up_time(Duration::from_secs(1))
+            .measurement_time(Duration::from_secs(5));
         let mut image = Image::new(load.width, load.height).expect("a small picture");
         let mut expected = None;
         for strategy in rayweave_registry::available() {
@@ -38,10 +43,12 @@ fn strategies(criterion: &mut Criterion) {
                 let mut ran = false;
                 group.bench_function(BenchmarkId::new(strategy.name(), threads), |bencher| {
                     ran = true;
-                    bencher
-                        .iter(|| renderer.render(&*load.work, &mut image).expect("the work does not fail"));
+                    bencher.iter(|| {
+                        renderer.render(&*load.work, &mut image).expect("the work does not fail")
+                    });
                 });
-                // What was timed is looked at, outside of the timing; a filter may have left it out.
+                // What was timed is looked at, outside of the timing; a filter may have left it
+                // out.
                 if ran {
                     let expected = *expected.get_or_insert_with(|| reference_digest(&load));
                     assert_eq!(image.digest(), expected, "{}: another picture", strategy.name());

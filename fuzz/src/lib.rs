@@ -1,7 +1,7 @@
 //! Bytes as a ray and a primitive.
 //!
-//! A number is any `f32` at all, or one of those where arithmetic turns, or a small fraction with few
-//! bits, or an ordinary one. A ray goes anywhere, or to a point on or beside the primitive.
+//! A number is any `f32` at all, or one of those where arithmetic turns, or a small fraction with
+//! few bits, or an ordinary one. A ray goes anywhere, or to a point on or beside the primitive.
 
 use libfuzzer_sys::arbitrary::{Result, Unstructured};
 use rayweave_accuracy::{Primitive, Ray, promise};
@@ -90,7 +90,8 @@ fn fraction(bytes: Bytes<'_, '_>) -> Result<f32> {
     Ok(f32::from(bytes.arbitrary::<i8>()?) / 16.0)
 }
 
-/// Where on the way from one end of something to the other: anywhere, at an end, or just beside one.
+/// Where on the way from one end of something to the other: anywhere, at an end, or just beside
+/// one.
 fn share(bytes: Bytes<'_, '_>) -> Result<f32> {
     if bytes.arbitrary()? {
         return fraction(bytes);

@@ -1,5 +1,5 @@
-//! Aims very many rays at the edges and corners of closed meshes, from inside, and counts those that get
-//! out: `cargo run --release -p rayweave-tests --example leaks -- --rays 100000000`.
+//! Aims very many rays at the edges and corners of closed meshes, from inside, and counts those
+//! that get out: `cargo run --release -p rayweave-tests --example leaks -- --rays 100000000`.
 
 use std::io::{self, Write};
 use std::process::ExitCode;
@@ -12,8 +12,8 @@ use rayweave_measure::random::SplitMix64;
 use rayweave_tests::meshes::{self, Mesh};
 use rayweave_tests::transform::{enlarged, moved, rounded};
 
-/// Rays from inside at the edges and corners of closed meshes; a ray that leaves one is a leak. Exit status
-/// 1 if there is any.
+/// Rays from inside at the edges and corners of closed meshes; a ray that leaves one is a leak.
+/// Exit status 1 if there is any.
 #[derive(Parser)]
 struct Options {
     /// How many rays in each precision, shared evenly by the meshes
@@ -36,7 +36,8 @@ enum Number {
     F64,
 }
 
-/// How often each mesh is drawn anew: the first time as it is, then of another size in another place.
+/// How often each mesh is drawn anew: the first time as it is, then of another size in another
+/// place.
 const PLACES: u64 = 16;
 /// The rays of one stream of random numbers.
 const STREAM: u64 = 1 << 14;
@@ -155,7 +156,8 @@ impl Placed {
         let (mut size, mut middle) = (1.0, DVec3::ZERO);
         if !as_it_is {
             size = libm::exp2(20.0 * random.fraction() - 10.0);
-            middle = size * 70.0 * DVec3::from_array([(); 3].map(|()| 2.0 * random.fraction() - 1.0));
+            middle =
+                size * 70.0 * DVec3::from_array([(); 3].map(|()| 2.0 * random.fraction() - 1.0));
         }
         let scene = moved(&enlarged(&meshes::scene_of(mesh), size), middle);
         // The corners that the kernel has are aimed at, to the last bit.
@@ -173,7 +175,8 @@ impl Placed {
         };
         let from = DVec3::from_array([(); 3].map(|()| coordinate()));
         let origin = self.middle + self.size * from;
-        let origin = if self.precision == Precision::F32 { origin.as_vec3().as_dvec3() } else { origin };
+        let origin =
+            if self.precision == Precision::F32 { origin.as_vec3().as_dvec3() } else { origin };
         let triangle = self.triangles[random.below(self.triangles.len())];
         let corner = random.below(3);
         let (a, b) = (triangle[corner], triangle[(corner + 1) % 3]);

@@ -1,10 +1,13 @@
-//! Scenes of as many primitives as one likes, drawn by seed: what a search through them may trip over.
+//! Scenes of as many primitives as one likes, drawn by seed: what a search through them may trip
+//! over.
 
 use crate::meshes;
 use crate::random_scene::Draw;
 use glam::DVec3;
 use rayweave_core::Scene;
-use rayweave_core::scene::{Camera, Cylinder, Light, Material, Plane, RenderSettings, Sphere, Triangle};
+use rayweave_core::scene::{
+    Camera, Cylinder, Light, Material, Plane, RenderSettings, Sphere, Triangle,
+};
 
 /// What there is many of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,8 +62,9 @@ impl Arrangement {
     ];
 }
 
-/// The scene of this number: `count` primitives within about 6 of the origin under one or two lights, some of
-/// them mirrors; the camera is beside them or among them. Some have a plane as well.
+/// The scene of this number: `count` primitives within about 6 of the origin under one or two
+/// lights, some of them mirrors; the camera is beside them or among them. Some have a plane as
+/// well.
 #[must_use]
 pub fn crowd(seed: u64, count: usize, shape: Shape, arrangement: Arrangement) -> Scene {
     let mut draw = Draw::new(seed);
@@ -81,7 +85,8 @@ pub fn crowd(seed: u64, count: usize, shape: Shape, arrangement: Arrangement) ->
             Arrangement::Copies => (draw.within(5.0), 2.0 * small * draw.between(0.3, 1.0)),
             Arrangement::Grid => {
                 let cell = bounded(&scene) as f64;
-                let (x, y, z) = (cell % side, (cell / side).floor() % side, (cell / side / side).floor());
+                let (x, y, z) =
+                    (cell % side, (cell / side).floor() % side, (cell / side / side).floor());
                 (DVec3::new(x, y, z) - (side / 2.0).floor(), 0.5)
             }
             Arrangement::Sheet => {
@@ -105,7 +110,12 @@ pub fn crowd(seed: u64, count: usize, shape: Shape, arrangement: Arrangement) ->
                 Some(cylinder) => Cylinder { material, ..cylinder },
                 None => {
                     let half = DVec3::Y * size * draw.magnitude(0.2, 4.0);
-                    Cylinder { bottom: place - half, top: place + half, radius: 0.5 * size, material }
+                    Cylinder {
+                        bottom: place - half,
+                        top: place + half,
+                        radius: 0.5 * size,
+                        material,
+                    }
                 }
             }),
         }
@@ -113,8 +123,8 @@ pub fn crowd(seed: u64, count: usize, shape: Shape, arrangement: Arrangement) ->
     scene
 }
 
-/// Closed meshes, `count` of them, anywhere and of any size, some within others; the camera looks along an axis
-/// from a corner's height, or from anywhere.
+/// Closed meshes, `count` of them, anywhere and of any size, some within others; the camera looks
+/// along an axis from a corner's height, or from anywhere.
 #[must_use]
 pub fn meshes(seed: u64, count: usize) -> Scene {
     let mut draw = Draw::new(seed);
@@ -125,7 +135,8 @@ pub fn meshes(seed: u64, count: usize) -> Scene {
         let (size, material) = (draw.magnitude(0.2, 2.0), draw.index(scene.materials.len()));
         let place = if draw.chance(0.5) { draw.within(4.0).round() } else { draw.within(4.0) };
         scene.triangles.extend(
-            mesh.iter().map(|corners| Triangle { vertices: corners.map(|c| place + size * c), material }),
+            mesh.iter()
+                .map(|corners| Triangle { vertices: corners.map(|c| place + size * c), material }),
         );
     }
     scene
@@ -137,7 +148,12 @@ fn bounded(scene: &Scene) -> usize {
 }
 
 /// Appends what `one` makes, of an entry that is there if it is to be a copy.
-fn add<T: Copy>(draw: &mut Draw, list: &mut Vec<T>, copy: bool, one: impl FnOnce(&mut Draw, Option<T>) -> T) {
+fn add<T: Copy>(
+    draw: &mut Draw,
+    list: &mut Vec<T>,
+    copy: bool,
+    one: impl FnOnce(&mut Draw, Option<T>) -> T,
+) {
     let original = (copy && !list.is_empty()).then(|| list[draw.index(list.len())]);
     list.push(one(draw, original));
 }
@@ -183,13 +199,22 @@ fn nothing(draw: &mut Draw, arrangement: Arrangement) -> Scene {
         (_, true) => (DVec3::new(0.5, 1.0, away), DVec3::new(0.5, 1.0, 0.0)),
         (_, false) => (draw.direction() * away, draw.within(1.0)),
     };
-    let camera =
-        Camera { position, look_at, up: DVec3::new(0.1, 1.0, 0.0), focal_length: 1.0, screen_width: 1.2 };
+    let camera = Camera {
+        position,
+        look_at,
+        up: DVec3::new(0.1, 1.0, 0.0),
+        focal_length: 1.0,
+        screen_width: 1.2,
+    };
     let light = |draw: &mut Draw| {
         let position = if draw.chance(0.5) { draw.within(4.0) } else { draw.direction() * 15.0 };
         Light { position, color: DVec3::ONE, power: 0.8 }
     };
-    let plane = |draw: &mut Draw| Plane { point: -7.0 * DVec3::Y, normal: DVec3::Y, material: draw.index(7) };
+    let plane = |draw: &mut Draw| Plane {
+        point: -7.0 * DVec3::Y,
+        normal: DVec3::Y,
+        material: draw.index(7),
+    };
     let mut scene = Scene {
         camera,
         render: RenderSettings {

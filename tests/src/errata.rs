@@ -275,8 +275,9 @@ pub fn shadings() -> Vec<ShadingWitness> {
     let ball = |center, radius| Sphere { center: DVec3::from_array(center), radius, material: 0 };
     let from_side = [-4.0, 3.0, 0.0];
     let skew = Triangle { vertices: SKEW.map(DVec3::from_array), material: 0 };
-    let from_eye =
-        |lights: &[[f64; 3]]| looking([0.0, 0.0, -2.0], [11.0 / 15.0, 8.0 / 15.0, 8.0 / 3.0], lights);
+    let from_eye = |lights: &[[f64; 3]]| {
+        looking([0.0, 0.0, -2.0], [11.0 / 15.0, 8.0 / 15.0, 8.0 / 3.0], lights)
+    };
     let mirror = |reflection| {
         let mut scene = looking(from_side, [0.0; 3], &[]);
         scene.render.background = DVec3::new(0.2, 0.4, 0.6);
@@ -311,7 +312,10 @@ pub fn shadings() -> Vec<ShadingWitness> {
         ShadingWitness {
             name: "a highlight from below the floor",
             report: "the highlight is not bound to n.l > 0: n.l = -.6, but m.-d = .28",
-            scene: Scene { planes: vec![floor], ..looking(from_side, [0.0; 3], &[[4.0, -3.0, 0.0]]) },
+            scene: Scene {
+                planes: vec![floor],
+                ..looking(from_side, [0.0; 3], &[[4.0, -3.0, 0.0]])
+            },
             expected: [0.1, 0.0, 0.0],
         },
         ShadingWitness {
@@ -329,7 +333,11 @@ pub fn shadings() -> Vec<ShadingWitness> {
             scene: Scene {
                 planes: vec![floor],
                 spheres: vec![ball([0.0, 2.0, 0.0], 1.0)],
-                ..looking(from_side, [0.0; 3], &[[0.0, 10.0, 0.0], [1.0, 10.0, 0.0], [0.0, 10.0, 1.0]])
+                ..looking(
+                    from_side,
+                    [0.0; 3],
+                    &[[0.0, 10.0, 0.0], [1.0, 10.0, 0.0], [0.0, 10.0, 1.0]],
+                )
             },
             expected: [0.1, 0.0, 0.0],
         },
@@ -412,7 +420,8 @@ fn plane_at(point: [f64; 3]) -> Plane {
 
 /// A scene with nothing in it but lights, and red with the model's defaults.
 fn looking(from: [f64; 3], at: [f64; 3], lights: &[[f64; 3]]) -> Scene {
-    let light = |&position| Light { position: DVec3::from_array(position), color: DVec3::ONE, power: 1.0 };
+    let light =
+        |&position| Light { position: DVec3::from_array(position), color: DVec3::ONE, power: 1.0 };
     Scene {
         camera: Camera {
             position: DVec3::from_array(from),

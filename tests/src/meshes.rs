@@ -29,7 +29,8 @@ pub fn cube() -> Mesh {
         for normal in [normal, -normal] {
             let up = normal.cross(side);
             let corner = |right: f64, above: f64| normal + right * side + above * up;
-            let [a, b, c, d] = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
+            let [a, b, c, d] =
+                [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
             triangles.extend([[a, b, c], [a, c, d]]);
         }
     }
@@ -54,7 +55,8 @@ pub fn icosahedron() -> Mesh {
     for (i, &a) in corners.iter().enumerate() {
         for (j, &b) in corners.iter().enumerate().skip(i + 1) {
             let rest = corners.iter().skip(j + 1);
-            let thirds = rest.filter(|&&c| neighbours(a, b) && neighbours(b, c) && neighbours(c, a));
+            let thirds =
+                rest.filter(|&&c| neighbours(a, b) && neighbours(b, c) && neighbours(c, a));
             triangles.extend(thirds.map(|&c| [a, b, c]));
         }
     }
@@ -65,7 +67,8 @@ pub fn icosahedron() -> Mesh {
 #[must_use]
 pub fn cone(sides: u32) -> Mesh {
     let corner = |k: u32| {
-        let (sin, cos) = libm::sincos(std::f64::consts::TAU * f64::from(k % sides) / f64::from(sides));
+        let (sin, cos) =
+            libm::sincos(std::f64::consts::TAU * f64::from(k % sides) / f64::from(sides));
         DVec3::new(2.0 * cos, -1.0, 2.0 * sin)
     };
     let (tip, middle) = (2.0 * DVec3::Y, -DVec3::Y);

@@ -316,7 +316,8 @@ pub fn samples(density: u32) -> Vec<Sample> {
     let mut samples = Vec::new();
     for row in 0..=2 * density {
         for column in 0..=2 * density {
-            let [dx, dy] = [column, row].map(|k| (f64::from(k) - f64::from(density)) / f64::from(density));
+            let [dx, dy] =
+                [column, row].map(|k| (f64::from(k) - f64::from(density)) / f64::from(density));
             samples.push(Sample { dx, dy, weight: (-(dx * dx + dy * dy) / 0.64).exp() });
         }
     }

@@ -16,8 +16,9 @@ pub fn plain(arithmetic: impl Into<Arithmetic>) -> Execution {
 pub fn executions(arithmetic: impl Into<Arithmetic>) -> Vec<Execution> {
     let plain = plain(arithmetic);
     let searches = [plain, Execution { search: Search::Auto, ..plain }];
-    let shared =
-        searches.into_iter().flat_map(|e| [false, true].map(|s| Execution { share_samples: s, ..e }));
+    let shared = searches
+        .into_iter()
+        .flat_map(|e| [false, true].map(|s| Execution { share_samples: s, ..e }));
     shared.flat_map(|e| Lanes::ALL.map(|lanes| Execution { lanes, ..e })).collect()
 }
 
@@ -27,7 +28,12 @@ pub fn executions(arithmetic: impl Into<Arithmetic>) -> Vec<Execution> {
 ///
 /// If the scene is not sound, the side is 0, or a picture of that size cannot be.
 #[must_use]
-pub fn in_tiles(scene: &Scene, (width, height): (u32, u32), execution: Execution, side: u32) -> Image {
+pub fn in_tiles(
+    scene: &Scene,
+    (width, height): (u32, u32),
+    execution: Execution,
+    side: u32,
+) -> Image {
     let work = tracer(scene, width, height, execution).expect("a sound scene");
     let mut picture = Image::filled(width, height, [f32::NAN; 3]).expect("a picture of this size");
     let tiles = picture.tiles(NonZeroU32::new(side).expect("not 0"));
@@ -40,7 +46,8 @@ pub fn in_tiles(scene: &Scene, (width, height): (u32, u32), execution: Execution
 pub fn difference(found: &Image, right: &Image) -> Option<String> {
     let bits = |color: &Rgb| color.map(f32::to_bits);
     let pairs = found.pixels().iter().zip(right.pixels()).enumerate();
-    let different: Vec<_> = pairs.filter(|(_, (found, right))| bits(found) != bits(right)).collect();
+    let different: Vec<_> =
+        pairs.filter(|(_, (found, right))| bits(found) != bits(right)).collect();
     let (index, (found, expected)) = different.first()?;
     let (count, position) = (different.len(), right.position(*index));
     Some(format!("{count} pixels differ, the first at {position:?}: {found:?}, not {expected:?}"))

@@ -5,7 +5,8 @@
 use crate::transform::{enlarged, moved};
 use glam::DVec3;
 use rayweave_core::scene::{
-    Camera, Cylinder, Light, MAX_SHININESS, Material, Plane, RenderSettings, Scene, Sphere, Triangle,
+    Camera, Cylinder, Light, MAX_SHININESS, Material, Plane, RenderSettings, Scene, Sphere,
+    Triangle,
 };
 use rayweave_measure::random::SplitMix64;
 use std::ops::RangeInclusive;
@@ -47,7 +48,8 @@ pub fn random_scene(seed: u64) -> Scene {
     let camera = scene.camera;
     for plane in &mut scene.planes {
         // Most planes do not stand between the camera and the middle.
-        let hides = plane.point.dot(plane.normal) * (plane.point - camera.position).dot(plane.normal) < 0.0;
+        let hides =
+            plane.point.dot(plane.normal) * (plane.point - camera.position).dot(plane.normal) < 0.0;
         if hides && draw.chance(0.9) {
             plane.point = -plane.point;
         }
@@ -127,12 +129,21 @@ impl Draw {
         self.integer(0..=count as u32 - 1) as usize
     }
 
-    fn several<T>(&mut self, count: RangeInclusive<u32>, mut one: impl FnMut(&mut Self) -> T) -> Vec<T> {
+    fn several<T>(
+        &mut self,
+        count: RangeInclusive<u32>,
+        mut one: impl FnMut(&mut Self) -> T,
+    ) -> Vec<T> {
         (0..self.integer(count)).map(|_| one(self)).collect()
     }
 
     /// At times, ends a list with the copy of an entry.
-    fn copy_one<T: Copy>(&mut self, list: &mut Vec<T>, set_material: impl Fn(&mut T, usize), count: usize) {
+    fn copy_one<T: Copy>(
+        &mut self,
+        list: &mut Vec<T>,
+        set_material: impl Fn(&mut T, usize),
+        count: usize,
+    ) {
         if !list.is_empty() && self.chance(0.15) {
             let mut copy = list[self.index(list.len())];
             set_material(&mut copy, self.index(count));
@@ -143,7 +154,11 @@ impl Draw {
     fn settings(&mut self) -> RenderSettings {
         RenderSettings {
             background: if self.chance(0.3) { DVec3::ZERO } else { self.color() },
-            max_reflections: if self.chance(0.9) { self.integer(0..=8) } else { self.integer(9..=64) },
+            max_reflections: if self.chance(0.9) {
+                self.integer(0..=8)
+            } else {
+                self.integer(9..=64)
+            },
             antialiasing: self.integer(0..=4),
             ..RenderSettings::default()
         }
@@ -179,7 +194,11 @@ impl Draw {
             6..=8 => (out * self.between(3.0, 12.0), out + tilt),
             _ => (self.within(3.0), out),
         };
-        Plane { point, normal: normal * side * self.magnitude(0.05, 20.0), material: self.index(materials) }
+        Plane {
+            point,
+            normal: normal * side * self.magnitude(0.05, 20.0),
+            material: self.index(materials),
+        }
     }
 
     fn sphere(&mut self, materials: usize) -> Sphere {
@@ -209,7 +228,9 @@ impl Draw {
             let (sin, cos) = libm::sincos(turn * f64::from(k));
             tip + size * (cos * right + sin * front - steep * axis)
         };
-        (0..corners).map(|k| Triangle { vertices: [tip, corner(k), corner(k + 1)], material }).collect()
+        (0..corners)
+            .map(|k| Triangle { vertices: [tip, corner(k), corner(k + 1)], material })
+            .collect()
     }
 
     fn cylinder(&mut self, materials: usize) -> Cylinder {
@@ -263,8 +284,8 @@ impl Draw {
                 let position = self.within(3.0);
                 let radius = self.between(1.0, 5.0);
                 let aside = self.direction() * DVec3::new(1.0, 0.0, 1.0);
-                let bottom =
-                    position + aside * radius * self.between(0.0, 0.8) - self.between(0.5, 4.0) * DVec3::Y;
+                let bottom = position + aside * radius * self.between(0.0, 0.8)
+                    - self.between(0.5, 4.0) * DVec3::Y;
                 let top = DVec3 { y: position.y + self.between(0.5, 4.0), ..bottom };
                 scene.cylinders.push(Cylinder { bottom, top, radius, material: self.index(count) });
                 (position, position + distance * self.direction())
@@ -361,7 +382,9 @@ mod tests {
                 s.lights.iter().any(|l| (l.position - s.camera.position).dot(view(s)) < 0.0)
             }),
             ("a light in a sphere", |s| {
-                s.lights.iter().any(|l| s.spheres.iter().any(|o| l.position.distance(o.center) < o.radius))
+                s.lights
+                    .iter()
+                    .any(|l| s.spheres.iter().any(|o| l.position.distance(o.center) < o.radius))
             }),
             ("no plane", |s| s.planes.is_empty()),
             ("several planes", |s| s.planes.len() > 1),
@@ -380,7 +403,9 @@ mod tests {
                 ];
                 empty == [false; 4]
             }),
-            ("a skew normal", |s| s.planes.iter().any(|p| p.normal.to_array().iter().all(|&x| x != 0.0))),
+            ("a skew normal", |s| {
+                s.planes.iter().any(|p| p.normal.to_array().iter().all(|&x| x != 0.0))
+            }),
             ("a short normal", |s| s.planes.iter().any(|p| p.normal.length() < 0.5)),
             ("two things in one place", |s| {
                 let places: Vec<_> = s.spheres.iter().map(|o| o.center.to_array()).collect();
@@ -404,7 +429,8 @@ mod tests {
             ("a half mirror", |s| of_material(s, |m| m.reflection > 0.0 && m.reflection < 1.0)),
             ("a full mirror", |s| of_material(s, |m| m.reflection == 1.0)),
             ("the least and most shininess", |s| {
-                of_material(s, |m| m.shininess == 1) && of_material(s, |m| m.shininess == MAX_SHININESS)
+                of_material(s, |m| m.shininess == 1)
+                    && of_material(s, |m| m.shininess == MAX_SHININESS)
             }),
             ("no bounce", |s| s.render.max_reflections == 0),
             ("many bounces", |s| s.render.max_reflections > 8),
@@ -424,8 +450,10 @@ mod tests {
         let mut seen = [0; 6];
         for scene in scenes() {
             let camera = &scene.camera;
-            let ray =
-                Ray { origin: camera.position, direction: (camera.look_at - camera.position).normalize() };
+            let ray = Ray {
+                origin: camera.position,
+                direction: (camera.look_at - camera.position).normalize(),
+            };
             let model = Model::new(&scene);
             let what = match model.first(&ray) {
                 None => 0,

@@ -15,7 +15,9 @@ pub const NAMES: [&str; 3] = ["report", "room", "imbalance"];
 /// If there is no such file, or it is not sound.
 #[must_use]
 pub fn named(name: &str) -> Scene {
-    rayweave_scene_file::load(&folder().join(format!("{name}.toml"))).expect("a sound scene file").scene
+    rayweave_scene_file::load(&folder().join(format!("{name}.toml")))
+        .expect("a sound scene file")
+        .scene
 }
 
 /// The names of the scenes that are hard for one thing or another, as the folder has them, sorted.
@@ -29,7 +31,8 @@ pub fn hard() -> Vec<String> {
         let file = entry.expect("an entry").file_name().into_string().expect("a plain name");
         file.strip_suffix(".toml").expect("a scene file").to_owned()
     };
-    let mut names: Vec<_> = fs::read_dir(folder().join("hard")).expect("a folder").map(name).collect();
+    let mut names: Vec<_> =
+        fs::read_dir(folder().join("hard")).expect("a folder").map(name).collect();
     names.sort();
     names
 }

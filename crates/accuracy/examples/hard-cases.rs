@@ -29,7 +29,8 @@ fn known_family(name: &str) -> Result<&'static Family, String> {
 
 fn main() -> io::Result<ExitCode> {
     let options = Options::parse();
-    let families = if options.family.is_empty() { FAMILIES.iter().collect() } else { options.family };
+    let families =
+        if options.family.is_empty() { FAMILIES.iter().collect() } else { options.family };
     let mut target = io::BufWriter::new(io::stdout().lock());
     for family in families {
         match cases::write(&mut target, &generate(family, options.seed, options.count)) {

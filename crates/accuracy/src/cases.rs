@@ -166,10 +166,16 @@ impl TryFrom<RawExpect> for Expect {
     fn try_from(raw: RawExpect) -> Result<Self, &'static str> {
         match raw {
             RawExpect { hit: Some(false), .. } => Ok(Self::Miss),
-            RawExpect { hit: Some(true), t: Some(t), point: Some(point), normal: Some(normal), .. } => {
-                Ok(Self::Hit { t, point, normal })
+            RawExpect {
+                hit: Some(true),
+                t: Some(t),
+                point: Some(point),
+                normal: Some(normal),
+                ..
+            } => Ok(Self::Hit { t, point, normal }),
+            RawExpect { hit: Some(true), .. } => {
+                Err("`expect`: a hit has `t`, `point` and `normal`")
             }
-            RawExpect { hit: Some(true), .. } => Err("`expect`: a hit has `t`, `point` and `normal`"),
             RawExpect { min_hits: Some(1), t: Some(t), .. } => Ok(Self::MeshHit { t }),
             RawExpect { min_hits: Some(_), .. } => Err("`expect`: `min_hits` is 1 and has a `t`"),
             RawExpect { .. } => Err("`expect` has `hit` or `min_hits`"),

@@ -30,7 +30,8 @@ pub struct NotDecimal(String);
 impl Decimal {
     /// The number, rounded to [`DIGITS`] significant digits.
     pub(crate) fn rounded(number: &RBig) -> Self {
-        // The quotient's own rounding, of a few units in the last place, must not reach the digits kept.
+        // The quotient's own rounding, of a few units in the last place, must not reach the digits
+        // kept.
         let longer: DBig = number.to_float(DIGITS + GUARD_DIGITS).value();
         Self(longer.with_precision(DIGITS).value())
     }
@@ -56,7 +57,8 @@ impl FromStr for Decimal {
         let number = (text.len() <= LONGEST).then(|| DBig::from_str(text).ok()).flatten();
         match number {
             Some(number)
-                if number.repr().is_finite() && number.repr().exponent().abs() <= LARGEST_EXPONENT =>
+                if number.repr().is_finite()
+                    && number.repr().exponent().abs() <= LARGEST_EXPONENT =>
             {
                 Ok(Self(number))
             }
@@ -96,7 +98,9 @@ mod tests {
 
     #[test]
     fn digits_come_back_as_they_were() {
-        for text in ["0", "4", "-0.5", "1.414213562373095048801688724209698078570", "1.25e-34", "-7e60"] {
+        for text in
+            ["0", "4", "-0.5", "1.414213562373095048801688724209698078570", "1.25e-34", "-7e60"]
+        {
             let number: Decimal = text.parse().expect(text);
             assert_eq!(number.to_string().parse(), Ok(number.clone()), "{text}");
         }
@@ -107,7 +111,9 @@ mod tests {
 
     #[test]
     fn what_is_no_number_is_refused() {
-        for text in ["", "inf", "NaN", "1.2.3", "1e999999999999", "1e-2000", "zero", &"1".repeat(300)] {
+        for text in
+            ["", "inf", "NaN", "1.2.3", "1e999999999999", "1e-2000", "zero", &"1".repeat(300)]
+        {
             assert!(text.parse::<Decimal>().is_err(), "{text}");
         }
     }

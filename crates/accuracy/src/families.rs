@@ -2,8 +2,8 @@
 //!
 //! A family draws inputs that come near one weakness of f32 formulas (cancellation, a decision on a
 //! boundary, a scale far from 1) over ranges as they occur in scenes and somewhat beyond, and the
-//! oracle answers them. The same family, seed and number give the same case on every machine: random
-//! numbers come from integers, and nothing rounds otherwise than IEEE 754 says.
+//! oracle answers them. The same family, seed and number give the same case on every machine:
+//! random numbers come from integers, and nothing rounds otherwise than IEEE 754 says.
 
 mod cylinder;
 mod draw;
@@ -52,7 +52,11 @@ impl Family {
         FAMILIES.iter().find(|family| family.name == name)
     }
 
-    const fn new(name: &'static str, about: &'static str, draw: fn(&mut Draw, usize) -> Setup) -> Self {
+    const fn new(
+        name: &'static str,
+        about: &'static str,
+        draw: fn(&mut Draw, usize) -> Setup,
+    ) -> Self {
         Self { name, about, draw, wanted: Wanted::Any }
     }
 
@@ -109,7 +113,11 @@ pub fn generate(family: &Family, seed: u64, count: usize) -> Vec<Case> {
 /// All families, by primitive.
 pub const FAMILIES: [Family; 36] = [
     Family::new("plane_basic", "nothing is hard: the control", plane::basic),
-    Family::new("plane_parallel", "rays almost parallel to the plane, 1e-7 to 0.1 rad", plane::parallel),
+    Family::new(
+        "plane_parallel",
+        "rays almost parallel to the plane, 1e-7 to 0.1 rad",
+        plane::parallel,
+    ),
     Family::new("plane_far", "planes 1e2 to 1e7 away", plane::far),
     Family::new("sphere_basic", "nothing is hard: the control", sphere::basic),
     Family::new("sphere_graze", "closest approach within 1e-8 to 0.1 of the radius", sphere::graze),
@@ -120,23 +128,43 @@ pub const FAMILIES: [Family; 36] = [
         sphere::ground,
     ),
     Family::new("sphere_inside", "origins inside", sphere::inside).wanting(Wanted::Hit),
-    Family::new("sphere_behind", "the sphere lies behind the origin", sphere::behind).wanting(Wanted::Miss),
+    Family::new("sphere_behind", "the sphere lies behind the origin", sphere::behind)
+        .wanting(Wanted::Miss),
     Family::new("sphere_surface_exact", "origins exactly on the surface", sphere::surface_exact),
-    Family::new("sphere_surface_round", "origins on the surface but for rounding", sphere::surface_round),
+    Family::new(
+        "sphere_surface_round",
+        "origins on the surface but for rounding",
+        sphere::surface_round,
+    ),
     Family::new("dir_scale", "directions 1e-30 to 1e34 long", mixed::direction_scale),
     Family::new("scale_scene", "everything scaled by 1e-4 to 2e6", mixed::scale),
     Family::new("offset_scene", "everything moved by 1e5 to 1e6", mixed::offset),
     Family::new("tri_basic", "nothing is hard: the control", triangle::basic),
     Family::new("tri_needle", "two vertices 1e-6 to 0.01 apart", triangle::needle),
     Family::new("tri_sliver", "a vertex 1e-6 to 0.01 from the edge opposite", triangle::sliver),
-    Family::new("tri_tiny_far", "triangles 1e2 to 3e5 times as far away as large", triangle::tiny_far),
-    Family::new("tri_edge_on", "rays 1e-6 to 0.03 rad from the triangle's plane", triangle::edge_on),
+    Family::new(
+        "tri_tiny_far",
+        "triangles 1e2 to 3e5 times as far away as large",
+        triangle::tiny_far,
+    ),
+    Family::new(
+        "tri_edge_on",
+        "rays 1e-6 to 0.03 rad from the triangle's plane",
+        triangle::edge_on,
+    ),
     Family::new("tri_edge", "rays 1e-7 to 0.01 inside or outside an edge", triangle::edge),
-    Family::new("tri_degenerate", "triangles without area", triangle::degenerate).wanting(Wanted::Miss),
-    Family::new("flat_surface_exact", "origins exactly on a plane or triangle", mixed::flat_surface_exact)
+    Family::new("tri_degenerate", "triangles without area", triangle::degenerate)
         .wanting(Wanted::Miss),
-    Family::new("mesh_edge", "rays at the edge that two triangles share", mesh::edge).wanting(Wanted::Hit),
-    Family::new("mesh_vertex", "rays at the vertex that a fan shares", mesh::vertex).wanting(Wanted::Hit),
+    Family::new(
+        "flat_surface_exact",
+        "origins exactly on a plane or triangle",
+        mixed::flat_surface_exact,
+    )
+    .wanting(Wanted::Miss),
+    Family::new("mesh_edge", "rays at the edge that two triangles share", mesh::edge)
+        .wanting(Wanted::Hit),
+    Family::new("mesh_vertex", "rays at the vertex that a fan shares", mesh::vertex)
+        .wanting(Wanted::Hit),
     Family::new("mesh_closed", "from inside an octahedron at its edges and vertices", mesh::closed)
         .wanting(Wanted::Hit),
     Family::new("cyl_basic", "nothing is hard: the control", cylinder::basic),
@@ -149,6 +177,11 @@ pub const FAMILIES: [Family; 36] = [
     Family::new("cyl_huge", "radius 1e3 to 1e6, height 0.1 to 10", cylinder::huge),
     Family::new("cyl_far", "origins 1e2 to 1e7 radii away", cylinder::far),
     Family::new("cyl_surface_exact", "origins exactly on the wall", cylinder::surface_exact),
-    Family::new("cyl_surface_round", "origins on the wall but for rounding", cylinder::surface_round),
-    Family::new("invalid_input", "NaN, infinite and zero input", mixed::invalid).wanting(Wanted::Miss),
+    Family::new(
+        "cyl_surface_round",
+        "origins on the wall but for rounding",
+        cylinder::surface_round,
+    ),
+    Family::new("invalid_input", "NaN, infinite and zero input", mixed::invalid)
+        .wanting(Wanted::Miss),
 ];

@@ -7,18 +7,19 @@ use crate::score::FamilyScore;
 /// What a kernel computes with, and so what can be asked of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tier {
-    /// f32, one rounding an operation. No wrong verdict on a decidable case, no leak, and the error of
-    /// a backward stable formula: 2 ulps for every unit of the condition number.
+    /// f32, one rounding an operation. No wrong verdict on a decidable case, no leak, and the error
+    /// of a backward stable formula: 2 ulps for every unit of the condition number.
     Plain32,
     /// f32 with error-free transforms (two-sum, two-product). The same, and 6 ulps at most wherever
     /// compensation removes the condition number: see [`Tier::goals`].
     Compensated32,
-    /// f64. No wrong verdict at all, borderline cases included, and a `t` right to 0.51 ulps of f32:
-    /// rounded to f32 it is the nearest one, but for ties.
+    /// f64. No wrong verdict at all, borderline cases included, and a `t` right to 0.51 ulps of
+    /// f32: rounded to f32 it is the nearest one, but for ties.
     Double,
 }
 
-/// Limits on the measures of a family; `None` where any value will do. Equality is within the limit.
+/// Limits on the measures of a family; `None` where any value will do. Equality is within the
+/// limit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Goals {
     /// Of [`FamilyScore::wrong`].
@@ -46,10 +47,11 @@ pub struct Missed {
     pub limit: f64,
 }
 
-/// Where error-free transforms remove the condition number. It is large there because a difference of
-/// products cancels (near a plane, far from a small sphere, close above a huge one, on a surface), and
-/// that difference is then exact. Elsewhere it is in the root itself (grazing rays) or in the triangle's
-/// normal (needles, slivers), or a control, where a rare large condition number is not chased.
+/// Where error-free transforms remove the condition number. It is large there because a difference
+/// of products cancels (near a plane, far from a small sphere, close above a huge one, on a
+/// surface), and that difference is then exact. Elsewhere it is in the root itself (grazing rays)
+/// or in the triangle's normal (needles, slivers), or a control, where a rare large condition
+/// number is not chased.
 const COMPENSATED: [&str; 19] = [
     "plane_basic",
     "plane_parallel",
@@ -74,8 +76,8 @@ const COMPENSATED: [&str; 19] = [
 /// Where the sign of one compensated difference decides every borderline case: on which side of the
 /// surface the origin was rounded to.
 const DECIDED_BY_COMPENSATION: [&str; 2] = ["sphere_surface_round", "cyl_surface_round"];
-/// Where the verdict is of interest, not `t`: which of two triangles that share an edge is hit is left
-/// to rounding, and their distances differ.
+/// Where the verdict is of interest, not `t`: which of two triangles that share an edge is hit is
+/// left to rounding, and their distances differ.
 const MESHES: [&str; 3] = ["mesh_edge", "mesh_vertex", "mesh_closed"];
 
 impl Tier {
@@ -156,7 +158,8 @@ mod tests {
 
     #[test]
     fn a_measure_at_its_limit_is_within_it() {
-        let mut score = FamilyScore { family: "cyl_far".into(), max: Some(6.0), ..FamilyScore::default() };
+        let mut score =
+            FamilyScore { family: "cyl_far".into(), max: Some(6.0), ..FamilyScore::default() };
         assert!(Tier::Compensated32.missed(&score).is_empty());
         score.max = Some(6.5);
         let missed = Missed { measure: "max", found: 6.5, limit: 6.0 };

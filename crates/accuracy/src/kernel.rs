@@ -3,7 +3,9 @@
 use crate::cases::{Case, Primitive};
 use crate::outcomes::Outcome;
 use glam::DVec3;
-use rayweave_core::scene::{Camera, Cylinder, Material, Plane, RenderSettings, Scene, Sphere, Triangle};
+use rayweave_core::scene::{
+    Camera, Cylinder, Material, Plane, RenderSettings, Scene, Sphere, Triangle,
+};
 use rayweave_core::{Arithmetic, Caster, Precision};
 use rayweave_measure::statistics::median;
 use std::hint::black_box;
@@ -20,8 +22,8 @@ pub struct Prepared {
 }
 
 impl Prepared {
-    /// Of `case`. Input that means nothing, which no scene may contain, is a miss; so is every triangle
-    /// without area.
+    /// Of `case`. Input that means nothing, which no scene may contain, is a miss; so is every
+    /// triangle without area.
     #[must_use]
     pub fn new(case: &Case, arithmetic: Arithmetic) -> Self {
         Self {
@@ -63,8 +65,8 @@ const PASSES: usize = 9;
 /// Rays a pass, at least: some tenths of a millisecond.
 const RAYS: usize = 4000;
 
-/// The time of a ray in nanoseconds, from origin and direction to the point and the normal of the hit,
-/// the call included; `None` without cases. The rays come one by one: a packet may be faster.
+/// The time of a ray in nanoseconds, from origin and direction to the point and the normal of the
+/// hit, the call included; `None` without cases. The rays come one by one: a packet may be faster.
 #[must_use]
 pub fn nanoseconds_per_ray(cases: &[&Prepared]) -> Option<f64> {
     if cases.is_empty() {
@@ -115,7 +117,9 @@ fn scene_of(primitive: &Primitive) -> Scene {
             radius: radius.into(),
             material,
         }),
-        Primitive::Mesh { ref triangles } => scene.triangles.extend(triangles.iter().copied().map(triangle)),
+        Primitive::Mesh { ref triangles } => {
+            scene.triangles.extend(triangles.iter().copied().map(triangle))
+        }
     }
     scene.triangles.retain(|triangle| triangle.check().is_ok());
     scene

@@ -1,4 +1,5 @@
-//! How right is it: pictures against the truth, and single rays against exact answers. Prints nothing.
+//! How right is it: pictures against the truth, and single rays against exact answers. Prints
+//! nothing.
 //!
 //! * [`tradeoff`]: every setting of the tracer, its time and its error;
 //! * [`metrics`]: how far a picture is from another, and [`flip`], as one sees it.
@@ -18,13 +19,13 @@
 //! * a ray is `origin + t direction`, the direction of any length, `t` in units of it;
 //! * a hit needs `t > 0`, and the smallest such `t` counts; a ray that starts on a surface does not
 //!   hit it there;
-//! * a plane and a triangle have two sides; a ray in their plane misses them; a triangle's edges and
-//!   vertices belong to it, and a triangle without area is never hit;
+//! * a plane and a triangle have two sides; a ray in their plane misses them; a triangle's edges
+//!   and vertices belong to it, and a triangle without area is never hit;
 //! * a sphere is touched by its tangents;
 //! * a cylinder is a wall without caps around an axis parallel to y, both rims included; a ray
 //!   parallel to the axis misses it;
-//! * a number that is not finite, a direction or a normal of zero, a radius of 0 or less, a cylinder
-//!   upside down or askew is a miss.
+//! * a number that is not finite, a direction or a normal of zero, a radius of 0 or less, a
+//!   cylinder upside down or askew is a miss.
 
 pub mod cases;
 pub mod decimal;

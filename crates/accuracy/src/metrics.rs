@@ -1,5 +1,5 @@
-//! How far a picture is from another, as one would see it: both are clamped to 0..=1 first, in linear
-//! light, as an 8-bit file would do. What a channel has above 1 or below 0 does not count.
+//! How far a picture is from another, as one would see it: both are clamped to 0..=1 first, in
+//! linear light, as an 8-bit file would do. What a channel has above 1 or below 0 does not count.
 
 use crate::flip;
 use rayweave_contract::Image;
@@ -113,7 +113,8 @@ mod tests {
 
     #[test]
     fn what_is_beyond_the_range_does_not_count() {
-        let difference = between([[1.5, -2.0, 1.0], [1.0; 3]], [[7.0, -1.0, 1.0], [f32::INFINITY; 3]]);
+        let difference =
+            between([[1.5, -2.0, 1.0], [1.0; 3]], [[7.0, -1.0, 1.0], [f32::INFINITY; 3]]);
         assert_eq!((difference.rmse, difference.flip), (0.0, 0.0));
     }
 

@@ -5,19 +5,21 @@
 //! fractions `p`, `s` and `d`, and are decided by rational arithmetic alone. The numbers of the
 //! answer are such expressions too; only to be written down are their roots taken, to 512 bits.
 //!
-//! How hard a case is for a kernel in f32 is said by three more numbers. Every kernel begins with the
-//! differences of positions (from origin to centre, to vertex ...), so the inputs `x_i` that count
-//! are these differences, the direction and the radius.
+//! How hard a case is for a kernel in f32 is said by three more numbers. Every kernel begins with
+//! the differences of positions (from origin to centre, to vertex ...), so the inputs `x_i` that
+//! count are these differences, the direction and the radius.
 //!
 //! * `cond`, the relative condition number of `t`: `sum_i |x_i dt/dx_i| / t`. A backward stable
 //!   kernel errs by a small multiple of `cond` ulps (Higham, "Accuracy and Stability of Numerical
 //!   Algorithms", 2nd ed., section 1.6).
 //! * `margin`: a verdict changes where some `g(x) = 0`; the distance from there, to first order, is
 //!   `|g| / sum_i |x_i dg/dx_i|`, and is given in ulps of 2^-23. A hit is as far from a miss as the
-//!   nearest of its boundaries; a miss with several reasons is as far from a hit as the best of them.
+//!   nearest of its boundaries; a miss with several reasons is as far from a hit as the best of
+//!   them.
 //! * `decidable`: the margin is 4 or more. It is infinite where f32 arithmetic computes a `g` of 0
-//!   without rounding, and where a triangle has no area: neither leaves a kernel an excuse. A hit of
-//!   a mesh is always decidable: of triangles that share an edge, rounding may choose either, but one.
+//!   without rounding, and where a triangle has no area: neither leaves a kernel an excuse. A hit
+//!   of a mesh is always decidable: of triangles that share an edge, rounding may choose either,
+//!   but one.
 
 mod cylinder;
 mod exact;
@@ -106,7 +108,9 @@ fn trace_finite(primitive: &Primitive, ray: &Ray) -> Option<(Trace, Expect)> {
         (Some(hit), Primitive::Mesh { .. }) => Expect::MeshHit { t: hit.t.decimal() },
         (Some(hit), _) => Expect::Hit {
             t: hit.t.decimal(),
-            point: Box::new(std::array::from_fn(|i| hit.t.times(&direction[i]).plus(&origin[i]).decimal())),
+            point: Box::new(std::array::from_fn(|i| {
+                hit.t.times(&direction[i]).plus(&origin[i]).decimal()
+            })),
             normal: Box::new(hit.normal.each_ref().map(Surd::decimal)),
         },
     };

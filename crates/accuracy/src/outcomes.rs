@@ -13,7 +13,8 @@ pub struct Outcome {
     pub id: String,
     /// Whether the primitive was hit; for a mesh, whether any triangle was.
     pub hit: bool,
-    /// Where on the ray, in units of its direction; for a mesh the nearest. May be absent on a miss.
+    /// Where on the ray, in units of its direction; for a mesh the nearest. May be absent on a
+    /// miss.
     #[serde(
         default,
         skip_serializing_if = "Option::is_none",

@@ -1,35 +1,37 @@
 //! What the robust kernel promises of any ray and any primitive, not only of those in the families.
 //!
 //! * It never panics.
-//! * Input that means nothing is a miss: a number that is not finite, a direction of zero, a primitive
-//!   that no scene may contain. Such are triangles whose area is 0 as a scene has it, to 8 roundings
-//!   of f64, where the oracle still tells it from 0; and cylinders without height.
+//! * Input that means nothing is a miss: a number that is not finite, a direction of zero, a
+//!   primitive that no scene may contain. Such are triangles whose area is 0 as a scene has it, to
+//!   8 roundings of f64, where the oracle still tells it from 0; and cylinders without height.
 //! * In f64, whatever other numbers f32 has: a hit has a finite `t` above 0; a decidable verdict is
-//!   right; and the `t` of a decidable hit is off by [`ERROR`] epsilons of itself for each unit of its
-//!   condition number at most. That is far within the goals of [`Tier::Double`].
-//! * In f32 the same, with the epsilon of f32, where the products of a few of the numbers stay within
-//!   its range:
+//!   right; and the `t` of a decidable hit is off by [`ERROR`] epsilons of itself for each unit of
+//!   its condition number at most. That is far within the goals of [`Tier::Double`].
+//! * In f32 the same, with the epsilon of f32, where the products of a few of the numbers stay
+//!   within its range:
 //!
-//!   - the radius, and each coordinate of each difference of two positions, is 0 or of a magnitude in
+//! - the radius, and each coordinate of each difference of two positions, is 0 or of a magnitude in
 //!     [`LENGTHS`];
-//!   - the longest component of the direction is of a magnitude in [`DIRECTIONS`], and the others, like
+//! - the longest component of the direction is of a magnitude in [`DIRECTIONS`], and the others,
+//! like
 //!     those of a normal, are 0 or at least [`FLATTEST`] of the longest.
 //!
 //! Decidable is what the oracle calls so, with two exceptions:
 //!
-//! * A hit whose `t` may be off by all of itself, by the bound above, may be missed: it cannot be told
-//!   from one at 0. So it is with a ray that starts on a sphere, to the last bit, and cuts off less than
-//!   2^-12 of it.
-//! * A triangle's verdict needs a larger margin where a vertex, as seen from the ray's origin, is far
-//!   along one axis and near along another: [`SPREAD`] ulps, of the precision, for each unit of the
-//!   ratio of its coordinates other than 0. The watertight test shears them into one, which is
-//!   rounded as the large one is. A ray that passes an edge a thousand times as long as its distance is
-//!   told from one beside it to some 100 ulps only; but on the same side by both triangles there, so
-//!   that nothing leaks.
+//! * A hit whose `t` may be off by all of itself, by the bound above, may be missed: it cannot be
+//!   told from one at 0. So it is with a ray that starts on a sphere, to the last bit, and cuts off
+//!   less than 2^-12 of it.
+//! * A triangle's verdict needs a larger margin where a vertex, as seen from the ray's origin, is
+//!   far along one axis and near along another: [`SPREAD`] ulps, of the precision, for each unit of
+//!   the ratio of its coordinates other than 0. The watertight test shears them into one, which is
+//!   rounded as the large one is. A ray that passes an edge a thousand times as long as its
+//!   distance is told from one beside it to some 100 ulps only; but on the same side by both
+//!   triangles there, so that nothing leaks.
 //!
-//! [`Tier::Plain32`] asks for 2 ulps for each unit of the condition number, in the families. Two epsilons
-//! are 2 ulps just above a power of two and 4 just below; other cases do come to more than 2 ulps,
-//! about one in a million. For a plane, two epsilons are the sum of all roundings there are.
+//! [`Tier::Plain32`] asks for 2 ulps for each unit of the condition number, in the families. Two
+//! epsilons are 2 ulps just above a power of two and 4 just below; other cases do come to more than
+//! 2 ulps, about one in a million. For a plane, two epsilons are the sum of all roundings there
+//! are.
 //!
 //! [`Tier::Double`]: crate::Tier::Double
 //! [`Tier::Plain32`]: crate::Tier::Plain32
@@ -50,8 +52,8 @@ use crate::outcomes::Outcome;
 
 /// Epsilons of relative error in `t` for each unit of its condition number.
 pub const ERROR: f64 = 2.0;
-/// Ulps of margin for each unit of a vertex's ratio of coordinates: three times what a search for the
-/// worst case found.
+/// Ulps of margin for each unit of a vertex's ratio of coordinates: three times what a search for
+/// the worst case found.
 pub const SPREAD: f64 = 0.5;
 /// Lengths that f32 is asked to work with, 2^-20 to 2^27.
 pub const LENGTHS: RangeInclusive<f64> = 1.0 / (1_u32 << 20) as f64..=(1_u32 << 27) as f64;
@@ -94,7 +96,13 @@ pub fn check(primitive: &Primitive, ray: &Ray) -> Result<(), Box<Broken>> {
     let answer = if meaningful {
         oracle::answer(primitive, ray)
     } else {
-        Answer { expect: Expect::Miss, cond: 0.0, margin: INFINITE, decidable: true, reason: "no meaning" }
+        Answer {
+            expect: Expect::Miss,
+            cond: 0.0,
+            margin: INFINITE,
+            decidable: true,
+            reason: "no meaning",
+        }
     };
     let case = Case {
         family: "any".into(),
@@ -107,12 +115,16 @@ pub fn check(primitive: &Primitive, ray: &Ray) -> Result<(), Box<Broken>> {
         margin: answer.margin,
         note: answer.reason.into(),
     };
-    for (precision, epsilon) in [(Precision::F64, f64::EPSILON), (Precision::F32, f32::EPSILON.into())] {
+    for (precision, epsilon) in
+        [(Precision::F64, f64::EPSILON), (Precision::F32, f32::EPSILON.into())]
+    {
         let outcome = kernel::outcome(&case, precision.into());
         if meaningful && precision == Precision::F32 && !inputs.fit_f32() {
             continue;
         }
-        if let Some(problem) = problem(&answer, &outcome, inputs.sure_margin(epsilon), ERROR * epsilon) {
+        if let Some(problem) =
+            problem(&answer, &outcome, inputs.sure_margin(epsilon), ERROR * epsilon)
+        {
             return Err(Box::new(Broken { case, precision, outcome, problem }));
         }
     }
@@ -120,7 +132,12 @@ pub fn check(primitive: &Primitive, ray: &Ray) -> Result<(), Box<Broken>> {
 }
 
 /// What is wrong with an outcome.
-fn problem(answer: &Answer, outcome: &Outcome, sure_margin: f64, error: f64) -> Option<&'static str> {
+fn problem(
+    answer: &Answer,
+    outcome: &Outcome,
+    sure_margin: f64,
+    error: f64,
+) -> Option<&'static str> {
     let t = outcome.t.filter(|t| t.is_finite() && *t > 0.0);
     if outcome.hit && t.is_none() {
         return Some("a hit without a finite t above 0");
@@ -133,9 +150,8 @@ fn problem(answer: &Answer, outcome: &Outcome, sure_margin: f64, error: f64) -> 
         (None, None) => None,
         (None, Some(_)) => Some("a hit where there is none"),
         (Some(_), None) => Some("no hit where there is one"),
-        (Some(expected), Some(t)) => {
-            (relative_error(t, expected) > error).then_some("an error larger than its condition number says")
-        }
+        (Some(expected), Some(t)) => (relative_error(t, expected) > error)
+            .then_some("an error larger than its condition number says"),
     }
 }
 
@@ -175,8 +191,8 @@ impl Inputs {
         })
     }
 
-    /// Whether there is a ray, and a scene may contain the primitive; what the oracle knows better of
-    /// the latter may be left to it.
+    /// Whether there is a ray, and a scene may contain the primitive; what the oracle knows better
+    /// of the latter may be left to it.
     fn are_meaningful(&self, primitive: &Primitive) -> bool {
         let accepted = match (primitive, &self.positions[..]) {
             (Primitive::Triangle { .. }, &[a, b, c]) => {
@@ -185,7 +201,8 @@ impl Inputs {
             (Primitive::Cylinder { .. }, [bottom, top]) => bottom.y < top.y,
             _ => true,
         };
-        let vectors = self.positions.iter().chain(&self.normal).chain([&self.origin, &self.direction]);
+        let vectors =
+            self.positions.iter().chain(&self.normal).chain([&self.origin, &self.direction]);
         accepted
             && self.direction != DVec3::ZERO
             && vectors.into_iter().all(|vector| vector.is_finite())
@@ -238,8 +255,9 @@ mod tests {
     /// Catches a check that everything passes.
     #[test]
     fn whatever_is_wrong_is_seen() {
-        let judge =
-            |expected, found, sure| problem(&answer(expected), &outcome(found), sure, 2.0 * f64::EPSILON);
+        let judge = |expected, found, sure| {
+            problem(&answer(expected), &outcome(found), sure, 2.0 * f64::EPSILON)
+        };
         let wrong = [
             (Some("1"), None),
             (None, Some(1.0)),
@@ -292,7 +310,8 @@ mod tests {
     #[test]
     fn a_wide_triangle_needs_a_wide_margin() {
         let ray = Ray { origin: [1.0; 3], direction: [0.0, 0.0, 1.0] };
-        let triangle = Primitive::Triangle { a: [0.0, 0.0, 3.0], b: [1.0, 2.0, 101.0], c: [1.0; 3] };
+        let triangle =
+            Primitive::Triangle { a: [0.0, 0.0, 3.0], b: [1.0, 2.0, 101.0], c: [1.0; 3] };
         let inputs = Inputs::of(&triangle, &ray).expect("no mesh");
         assert_eq!(inputs.sure_margin(f32::EPSILON.into()), 50.0);
         assert_eq!(inputs.sure_margin(f64::EPSILON), DECIDABLE_MARGIN);

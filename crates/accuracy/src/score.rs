@@ -14,9 +14,9 @@ const SMALLEST_EXPONENT: isize = -126;
 
 /// The cases of one family, and what a kernel made of them.
 ///
-/// An outcome is wrong where hit or miss is, where it is missing, and where a hit has no `t`, one that
-/// is not finite, or one of 0 or less. Errors are those of `t`, in f32 ulps of the true `t`, on decidable
-/// hits that the kernel hit too; `None` where there are none.
+/// An outcome is wrong where hit or miss is, where it is missing, and where a hit has no `t`, one
+/// that is not finite, or one of 0 or less. Errors are those of `t`, in f32 ulps of the true `t`,
+/// on decidable hits that the kernel hit too; `None` where there are none.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FamilyScore {
     /// Its name.
@@ -58,8 +58,9 @@ impl FamilyScore {
     }
 }
 
-/// Scores outcomes family by family, in the order in which the families come. Cases without an answer
-/// are left out; of several outcomes with one id the last counts, and an unknown id does not.
+/// Scores outcomes family by family, in the order in which the families come. Cases without an
+/// answer are left out; of several outcomes with one id the last counts, and an unknown id does
+/// not.
 #[must_use]
 pub fn score(cases: &[Case], outcomes: &[Outcome]) -> Vec<FamilyScore> {
     let outcomes: HashMap<&str, &Outcome> =
@@ -151,7 +152,10 @@ impl Error {
         let size = |value: RBig| if value < RBig::ZERO { -value } else { value };
         let error = size(RBig::try_from(t).unwrap_or_default() - expected);
         let expected = size(expected.clone());
-        Self { ulps: (&error / ulp(&expected)).to_f64().value(), gross: error * RBig::from(1000) > expected }
+        Self {
+            ulps: (&error / ulp(&expected)).to_f64().value(),
+            gross: error * RBig::from(1000) > expected,
+        }
     }
 }
 
@@ -159,7 +163,8 @@ impl Error {
 fn ulp(size: &RBig) -> RBig {
     let power = |exponent: isize| RBig::from(2).pow(exponent);
     // The f64 logarithm may be off by one beside a power of two.
-    let mut exponent = size.to_f64().value().log2().floor().clamp(SMALLEST_EXPONENT as f64, 1023.0) as isize;
+    let mut exponent =
+        size.to_f64().value().log2().floor().clamp(SMALLEST_EXPONENT as f64, 1023.0) as isize;
     while exponent > SMALLEST_EXPONENT && power(exponent) > *size {
         exponent -= 1;
     }
@@ -182,7 +187,9 @@ mod tests {
     fn ulps_change_at_powers_of_two() {
         let below_one = "0.9999999999999999999999999999999999999999";
         assert_eq!(Error::of(1.0 + 2.0_f64.powi(-24), &rational("1")).ulps, 0.5);
-        assert!((Error::of(1.0 + 2.0_f64.powi(-24), &rational(below_one)).ulps - 1.0).abs() < 1e-15);
+        assert!(
+            (Error::of(1.0 + 2.0_f64.powi(-24), &rational(below_one)).ulps - 1.0).abs() < 1e-15
+        );
         assert_eq!(Error::of(2.0, &rational("1.5")).ulps, f64::from(1 << 22));
         // Subnormal numbers all have the spacing of the smallest normal ones.
         assert_eq!(ulp(&rational("1e-44")), RBig::from(2).pow(-149));

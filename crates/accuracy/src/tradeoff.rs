@@ -61,9 +61,11 @@ pub struct Row {
     pub speedup: Interval,
     /// From the truth.
     pub error: Difference,
-    /// Of that, what rounding did: root mean square from the same rays in the most exact arithmetic.
+    /// Of that, what rounding did: root mean square from the same rays in the most exact
+    /// arithmetic.
     pub arithmetic_rmse: f64,
-    /// Of that, what too few rays did: the same with the scene's bounces and the most exact arithmetic.
+    /// Of that, what too few rays did: the same with the scene's bounces and the most exact
+    /// arithmetic.
     pub sampling_rmse: f64,
     /// Whether no other setting is faster and as exact, or more exact and as fast.
     pub in_front: bool,
@@ -118,8 +120,8 @@ struct Subject<'a> {
 
 impl Experiment<'_> {
     /// Renders the truth, then measures every setting in interleaved rounds. The warm-up gives the
-    /// errors, the rounds the times. `render` gives the picture of a work, untimed; `progress` is told
-    /// what share is done, between the timed spans.
+    /// errors, the rounds the times. `render` gives the picture of a work, untimed; `progress` is
+    /// told what share is done, between the timed spans.
     ///
     /// # Errors
     ///
@@ -133,7 +135,8 @@ impl Experiment<'_> {
         let reference = Reference::new(self.scene, self.size, render)?;
         let settings = Setting::all(self.scene);
         let parts = Parts::of(self.scene);
-        let mut subjects: Vec<Subject<'_>> = settings.iter().map(|&s| Subject::new(self.scene, s)).collect();
+        let mut subjects: Vec<Subject<'_>> =
+            settings.iter().map(|&s| Subject::new(self.scene, s)).collect();
         subjects.extend(parts.subjects());
 
         let mut errors: Vec<Errors> = Vec::new();
@@ -203,7 +206,8 @@ pub fn timed(
     size: (u32, u32),
 ) -> Result<Timed, String> {
     let work = setting.work(scene, size).map_err(|e| e.to_string())?;
-    let mut stopwatch = Stopwatch::new(&*work, size.0, size.1, NonZeroU32::MAX).map_err(|e| e.to_string())?;
+    let mut stopwatch =
+        Stopwatch::new(&*work, size.0, size.1, NonZeroU32::MAX).map_err(|e| e.to_string())?;
     let Rendering { sample, digest, .. } =
         stopwatch.render(&Entry { strategy, threads: NonZeroUsize::MIN })?;
     Ok(Timed { picture: stopwatch.into_picture(), digest, nanoseconds: sample.render_ns })
@@ -216,13 +220,16 @@ struct Errors {
 }
 
 fn rows(settings: &[Setting], times: &[&[u64]], errors: &[Errors]) -> Vec<Row> {
-    let place = |wanted: Setting| settings.iter().position(|s| *s == wanted).expect("among the settings");
+    let place =
+        |wanted: Setting| settings.iter().position(|s| *s == wanted).expect("among the settings");
     let deepest = settings[0].max_reflections;
     let report = times[place(Setting::report(deepest))];
-    let medians: Vec<f64> = times.iter().take(settings.len()).map(|times| median_ns(times)).collect();
+    let medians: Vec<f64> =
+        times.iter().take(settings.len()).map(|times| median_ns(times)).collect();
     // To the tenth of a decibel: less is no reason to call one better.
     let decibels = |errors: &Errors| -(10.0 * errors.all.psnr()).round();
-    let points: Vec<(f64, f64)> = medians.iter().zip(errors).map(|(&t, e)| (t, decibels(e))).collect();
+    let points: Vec<(f64, f64)> =
+        medians.iter().zip(errors).map(|(&t, e)| (t, decibels(e))).collect();
     let front = pareto_front(&points);
     let row = |(i, setting): (usize, &Setting)| {
         let unlimited = place(Setting { arithmetic: EXACT, max_reflections: deepest, ..*setting });

@@ -42,7 +42,9 @@ pub enum ImageError {
         height: u32,
     },
     /// A width or height of 0.
-    #[error("a picture of {width} x {height} has no pixels: choose a width and a height of 1 or more")]
+    #[error(
+        "a picture of {width} x {height} has no pixels: choose a width and a height of 1 or more"
+    )]
     Empty {
         /// In pixels.
         width: u32,
@@ -122,7 +124,8 @@ impl Image {
     /// Each channel in 8 bits: `floor(255 clamp(c, 0, 1) + 0.5)`, without gamma; 0 for a NaN.
     #[must_use]
     pub fn to_rgb8(&self) -> Vec<u8> {
-        let byte = |channel: &f32| (255.0 * f64::from(*channel).clamp(0.0, 1.0) + 0.5).floor() as u8;
+        let byte =
+            |channel: &f32| (255.0 * f64::from(*channel).clamp(0.0, 1.0) + 0.5).floor() as u8;
         self.pixels.as_flattened().iter().map(byte).collect()
     }
 
@@ -138,10 +141,12 @@ impl Image {
         let (width, size) = (self.width as usize, size.get().min(self.width.max(self.height)));
         let count = |length: u32| length.div_ceil(size) as usize;
         let mut tiles = Vec::with_capacity(count(self.width) * count(self.height));
-        for (y, band) in
-            (0..self.height).step_by(size as usize).zip(self.pixels.chunks_mut(width * size as usize))
+        for (y, band) in (0..self.height)
+            .step_by(size as usize)
+            .zip(self.pixels.chunks_mut(width * size as usize))
         {
-            let mut rows: Vec<_> = band.chunks_mut(width).map(|row| row.chunks_mut(size as usize)).collect();
+            let mut rows: Vec<_> =
+                band.chunks_mut(width).map(|row| row.chunks_mut(size as usize)).collect();
             for x in (0..self.width).step_by(size as usize) {
                 // As many columns as `x` has values are in each row.
                 let slices = rows.iter_mut().map(|row| row.next().unwrap_or_default());
@@ -151,7 +156,8 @@ impl Image {
         tiles
     }
 
-    /// SHA-256 over width, height (as 32-bit integers) and the bits of every channel, all little-endian.
+    /// SHA-256 over width, height (as 32-bit integers) and the bits of every channel, all
+    /// little-endian.
     #[must_use]
     pub fn digest(&self) -> Digest {
         let mut hash = Sha256::new();
@@ -170,8 +176,9 @@ impl Image {
 
 impl PartialEq for Image {
     fn eq(&self, other: &Self) -> bool {
-        let bits =
-            |image: &Self| -> Vec<u32> { image.pixels.as_flattened().iter().map(|c| c.to_bits()).collect() };
+        let bits = |image: &Self| -> Vec<u32> {
+            image.pixels.as_flattened().iter().map(|c| c.to_bits()).collect()
+        };
         (self.width, self.height) == (other.width, other.height) && bits(self) == bits(other)
     }
 }

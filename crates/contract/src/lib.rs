@@ -8,6 +8,8 @@ mod work;
 
 pub use image::{Digest, Image, ImageError, MAX_PIXELS, NotADigest, Rgb};
 pub use policy::{Dealing, Delivery, Piece, Rule};
-pub use strategy::{Plan, Renderer, Strategy, StrategyError, ThreadsStart, panic_message, render_tile};
+pub use strategy::{
+    Plan, Renderer, Strategy, StrategyError, ThreadsStart, panic_message, render_tile,
+};
 pub use tile::{Area, Tile};
 pub use work::Work;

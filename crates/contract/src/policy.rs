@@ -1,4 +1,5 @@
-//! What a strategy decides, in OpenMP's words: how large a piece is, who gets it, how it gets into the image.
+//! What a strategy decides, in OpenMP's words: how large a piece is, who gets it, how it gets into
+//! the image.
 
 /// How a strategy deals out the work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,8 +39,9 @@ pub enum Dealing {
     Guided,
     /// Each thread has a range of its own; whoever is idle takes half of another's.
     Stealing,
-    /// One thread halves the whole range until there are about twice as many parts as threads; a part that an idle
-    /// thread takes from another is halved again as often. Within a part nothing is taken. So rayon's loops do.
+    /// One thread halves the whole range until there are about twice as many parts as threads; a
+    /// part that an idle thread takes from another is halved again as often. Within a part nothing
+    /// is taken. So rayon's loops do.
     Halving,
 }
 

@@ -24,13 +24,14 @@ pub trait Strategy: Sync {
     /// How it deals out the work: what a simulation of it goes by.
     fn rule(&self) -> Rule;
 
-    /// What is missing on this machine, or was when it was built, and how to get it; nothing if it can be
-    /// prepared.
+    /// What is missing on this machine, or was when it was built, and how to get it; nothing if it
+    /// can be prepared.
     fn unavailable(&self) -> Option<&'static str> {
         None
     }
 
-    /// Makes ready to render with exactly `plan.threads` computing threads; a thread pool is built here.
+    /// Makes ready to render with exactly `plan.threads` computing threads; a thread pool is built
+    /// here.
     ///
     /// # Errors
     ///
@@ -124,10 +125,8 @@ pub fn render_tile(
     tile: &mut Tile<'_>,
 ) -> Result<(), StrategyError> {
     // After a panic nobody reads the tile as a result: the whole rendering is an error.
-    catch_unwind(AssertUnwindSafe(|| work.render(tile))).map_err(|payload| StrategyError::Panicked {
-        strategy,
-        tile: tile.area(),
-        message: panic_message(&*payload),
+    catch_unwind(AssertUnwindSafe(|| work.render(tile))).map_err(|payload| {
+        StrategyError::Panicked { strategy, tile: tile.area(), message: panic_message(&*payload) }
     })
 }
 

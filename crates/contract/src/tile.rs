@@ -63,8 +63,8 @@ impl<'a> Tile<'a> {
         Self { area, rows: Rows::One(colors) }
     }
 
-    /// The tile of whole rows of a picture from row `y` down, wherever their colours are kept: row after
-    /// row, each of `width` pixels.
+    /// The tile of whole rows of a picture from row `y` down, wherever their colours are kept: row
+    /// after row, each of `width` pixels.
     ///
     /// # Panics
     ///
@@ -72,12 +72,19 @@ impl<'a> Tile<'a> {
     #[must_use]
     pub fn band(y: u32, width: u32, colors: &'a mut [Rgb]) -> Self {
         let row = width as usize;
-        assert!(!colors.is_empty() && colors.len().is_multiple_of(row), "whole rows of {width} pixels");
+        assert!(
+            !colors.is_empty() && colors.len().is_multiple_of(row),
+            "whole rows of {width} pixels"
+        );
         Self::of_rows(0, y, colors.chunks_exact_mut(row))
     }
 
     /// The tile of one row or more.
-    pub(crate) fn of_rows(x: u32, y: u32, mut rows: impl ExactSizeIterator<Item = &'a mut [Rgb]>) -> Self {
+    pub(crate) fn of_rows(
+        x: u32,
+        y: u32,
+        mut rows: impl ExactSizeIterator<Item = &'a mut [Rgb]>,
+    ) -> Self {
         let height = rows.len();
         let first = rows.next().unwrap_or_default();
         let area = Area { x, y, width: first.len() as u32, height: height as u32 };

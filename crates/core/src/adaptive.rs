@@ -1,7 +1,8 @@
-//! Lattice points that need no ray: where the pixel centres around them look alike, they are interpolated.
+//! Lattice points that need no ray: where the pixel centres around them look alike, they are
+//! interpolated.
 //!
-//! A point between two centres is decided by these two, one amid four centres by the four. So whoever computes it
-//! decides alike, whichever tile it is in.
+//! A point between two centres is decided by these two, one amid four centres by the four. So
+//! whoever computes it decides alike, whichever tile it is in.
 
 use crate::lane::Scalar;
 use crate::lattice::LatticeSums;
@@ -22,7 +23,8 @@ pub(crate) struct Bands<S> {
     count: usize,
     above: Option<Centres<S>>,
     below: Option<Centres<S>>,
-    /// For a moment: the colours in one channel so many steps right of each centre, above and below.
+    /// For a moment: the colours in one channel so many steps right of each centre, above and
+    /// below.
     mixed: [Vec<S>; 2],
 }
 
@@ -49,8 +51,9 @@ impl<S: Scalar> Bands<S> {
         self.above = self.below.replace(centres);
     }
 
-    /// Interpolates the band that ends with the row of centres, its last row. `places` are those of the points whose
-    /// centres do not look alike, counted from its first row: their colours are what `sums` expects.
+    /// Interpolates the band that ends with the row of centres, its last row. `places` are those of
+    /// the points whose centres do not look alike, counted from its first row: their colours are
+    /// what `sums` expects.
     pub(crate) fn interpolate(&mut self, sums: &mut LatticeSums<'_, S>, places: &mut Places<S>) {
         places.clear();
         sums.start_strip(self.density);
@@ -58,13 +61,16 @@ impl<S: Scalar> Bands<S> {
         self.place_unlike(sums, places);
     }
 
-    /// Every point, also where the centres do not look alike: all together, that is quicker than to ask of each.
+    /// Every point, also where the centres do not look alike: all together, that is quicker than to
+    /// ask of each.
     fn interpolate_all(&mut self, sums: &mut LatticeSums<'_, S>) {
         let (density, last) = (self.density, self.density - 1);
         let Some(below) = &self.below else { return };
         let share = |steps: usize| S::from_f64(steps as f64 / density as f64);
         let [top, bottom] = &mut self.mixed;
-        for (aside, channel) in (0..density).flat_map(|aside| (0..3).map(move |channel| (aside, channel))) {
+        for (aside, channel) in
+            (0..density).flat_map(|aside| (0..3).map(move |channel| (aside, channel)))
+        {
             let (right, across) = (usize::from(aside > 0), share(aside));
             let mix_across = |centres: &Centres<S>, mixed: &mut Vec<S>| {
                 let colors = &centres.colors[channel];
@@ -87,17 +93,20 @@ impl<S: Scalar> Bands<S> {
         }
     }
 
-    /// Places the points whose centres do not look alike, cell by cell, each from a centre to the next one right and the next
-    /// one down: so those that follow each other are neighbours.
+    /// Places the points whose centres do not look alike, cell by cell, each from a centre to the
+    /// next one right and the next one down: so those that follow each other are neighbours.
     fn place_unlike(&self, sums: &mut LatticeSums<'_, S>, places: &mut Places<S>) {
         let (density, last) = (self.density, self.density - 1);
         let Some(below) = &self.below else { return };
         for centre in 0..self.count {
-            let across =
-                |centres: &Centres<S>| centres.trails.get(centre + 1) == Some(&centres.trails[centre]);
+            let across = |centres: &Centres<S>| {
+                centres.trails.get(centre + 1) == Some(&centres.trails[centre])
+            };
             let alike_below = across(below);
-            let alike_down =
-                self.above.as_ref().is_some_and(|above| above.trails[centre] == below.trails[centre]);
+            let alike_down = self
+                .above
+                .as_ref()
+                .is_some_and(|above| above.trails[centre] == below.trails[centre]);
             let alike_above = self.above.as_ref().is_some_and(across);
             let alike = alike_above && alike_below && alike_down;
             if alike {

@@ -16,8 +16,8 @@ pub struct Analysis {
     pub behind: usize,
     /// The most bounces of a ray: 0 if nothing mirrors.
     pub bounces: u32,
-    /// Lights, and how many of them can light anything that is seen: not those without power, nor those behind a
-    /// plane.
+    /// Lights, and how many of them can light anything that is seen: not those without power, nor
+    /// those behind a plane.
     pub lights: (usize, usize),
     /// For each light that can, the planes that may hide it.
     pub hiding_planes: Vec<usize>,
@@ -30,8 +30,8 @@ pub struct Analysis {
 pub enum Found {
     /// It tries each.
     Each,
-    /// It tries those in whose direction it goes, if it starts at the eye or ends at a light; else each, triangles if it
-    /// comes near any.
+    /// It tries those in whose direction it goes, if it starts at the eye or ends at a light; else
+    /// each, triangles if it comes near any.
     Cones,
     /// It follows a tree of boxes of this many leaves.
     Tree {
@@ -64,7 +64,8 @@ impl Compiled for Looked<'_> {
     fn compiled<S: Scalar, F: Family>(self) -> Analysis {
         let scene = self.scene;
         let world = World::<S, F>::new(scene, Some(scene.camera.position), self.search);
-        let hiding_planes: Vec<usize> = world.lights.iter().map(|light| light.planes.len()).collect();
+        let hiding_planes: Vec<usize> =
+            world.lights.iter().map(|light| light.planes.len()).collect();
         let primitives =
             [scene.planes.len(), scene.spheres.len(), scene.triangles.len(), scene.cylinders.len()];
         Analysis {
@@ -123,8 +124,10 @@ mod tests {
 
     /// A floor, spheres on it, a light above, one below and one without power.
     fn scene(spheres: usize, reflection: f64) -> Scene {
-        let light = |y, power| Light { position: DVec3::new(0.0, y, 0.0), color: DVec3::ONE, power };
-        let sphere = |i| Sphere { center: DVec3::new(f64::from(i), 1.0, 0.0), radius: 0.4, material: 0 };
+        let light =
+            |y, power| Light { position: DVec3::new(0.0, y, 0.0), color: DVec3::ONE, power };
+        let sphere =
+            |i| Sphere { center: DVec3::new(f64::from(i), 1.0, 0.0), radius: 0.4, material: 0 };
         Scene {
             camera: Camera {
                 position: DVec3::new(0.0, 1.0, 9.0),
@@ -148,18 +151,22 @@ mod tests {
         Analysis::of(&scene(spheres, reflection), &execution).expect("a sound scene")
     }
 
-    /// Catches a light, a plane, a mirror or a tree that is used though nothing needs it, or the other way around.
+    /// Catches a light, a plane, a mirror or a tree that is used though nothing needs it, or the
+    /// other way around.
     #[test]
     fn what_is_not_needed_is_left_out() {
         let few = analysis(3, 0.0, Search::Auto);
         assert_eq!((few.primitives, few.bounces, few.lights), ([1, 3, 0, 0], 0, (3, 1)));
         assert_eq!((few.hiding_planes.as_slice(), few.search), (&[0][..], Found::Cones));
         assert_eq!(analysis(3, 0.5, Search::Auto).bounces, 4);
-        assert!(matches!(analysis(100, 0.0, Search::Auto).search, Found::Tree { leaves } if leaves > 10));
+        assert!(
+            matches!(analysis(100, 0.0, Search::Auto).search, Found::Tree { leaves } if leaves > 10)
+        );
         assert_eq!(analysis(100, 0.0, Search::Exhaustive).search, Found::Each);
     }
 
-    /// Catches what is left out though a mirror, or the way to a light behind the eye, shows it; and what is not.
+    /// Catches what is left out though a mirror, or the way to a light behind the eye, shows it;
+    /// and what is not.
     #[test]
     fn what_is_behind_is_left_out() {
         let behind = |reflection, light_z, search| {

@@ -1,5 +1,5 @@
-//! The filter `exp(-(dx^2 + dy^2) / 0.64)` over the square out to one pixel from a pixel's centre, as
-//! a sum over samples. It is the product of the same function of each coordinate.
+//! The filter `exp(-(dx^2 + dy^2) / 0.64)` over the square out to one pixel from a pixel's centre,
+//! as a sum over samples. It is the product of the same function of each coordinate.
 
 use crate::lane::Scalar;
 use crate::samples::{Colors, Places};
@@ -62,8 +62,8 @@ impl<S: Scalar> Filter<S> {
         self.density
     }
 
-    /// The weights of the `2 s + 1` samples across a pixel, for samples on a square lattice, which neighbouring
-    /// pixels share.
+    /// The weights of the `2 s + 1` samples across a pixel, for samples on a square lattice, which
+    /// neighbouring pixels share.
     pub(crate) fn lattice_weights(&self) -> Option<&[S]> {
         self.lattice.as_deref()
     }
@@ -107,8 +107,8 @@ impl<S: Scalar> Filter<S> {
         color.to_array().map(S::to_f32)
     }
 
-    /// `(2 s + 1)^2` samples of a square lattice with `s` steps a pixel. Places are whole numbers of
-    /// half steps, so neighbouring pixels share them to the bit.
+    /// `(2 s + 1)^2` samples of a square lattice with `s` steps a pixel. Places are whole numbers
+    /// of half steps, so neighbouring pixels share them to the bit.
     fn lattice(density: u32) -> Self {
         let reach = f64::from(density);
         let steps = || (0..=2 * density).map(|i| f64::from(i) - reach);
@@ -116,20 +116,26 @@ impl<S: Scalar> Filter<S> {
         let weight = |step: f64| libm::exp(-(step / reach) * (step / reach) / 0.64);
         let sum: f64 = steps().map(weight).sum();
         let samples: Vec<Sample<S>> = steps()
-            .map(|step| Sample { right: S::from_f64(2.0 * step), weight: S::from_f64(weight(step) / sum) })
+            .map(|step| Sample {
+                right: S::from_f64(2.0 * step),
+                weight: S::from_f64(weight(step) / sum),
+            })
             .collect();
-        let row =
-            |sample: &Sample<S>| Row { down: sample.right, weight: sample.weight, samples: samples.clone() };
+        let row = |sample: &Sample<S>| Row {
+            down: sample.right,
+            weight: sample.weight,
+            samples: samples.clone(),
+        };
         let lattice = samples.iter().map(|sample| sample.weight).collect();
         Self::of_rows(samples.iter().map(row).collect(), density, Some(lattice))
     }
 
     /// `count` samples of equal weight, as dense as the filter is high (filter importance sampling:
     /// Ernst, Stamminger and Greiner, 2006): the points of a rank-1 lattice in the unit square
-    /// (Dammertz and Keller, Image Synthesis by Rank-1 Lattices, 2008), each coordinate moved by the
-    /// inverse of the filter's distribution. No two share a row or a column, so an edge along an
-    /// axis is resolved `count` fold, where a square lattice of as many samples resolves it by the
-    /// square root of that.
+    /// (Dammertz and Keller, Image Synthesis by Rank-1 Lattices, 2008), each coordinate moved by
+    /// the inverse of the filter's distribution. No two share a row or a column, so an edge along
+    /// an axis is resolved `count` fold, where a square lattice of as many samples resolves it by
+    /// the square root of that.
     fn importance(count: u32) -> Self {
         let generator = rank1_generator(count);
         // Turned by half a turn around the pixel's centre the samples are what they were: so what
@@ -137,7 +143,8 @@ impl<S: Scalar> Filter<S> {
         // first column, `shift`, is as far from the top as that of the last is from the bottom:
         // 2 shift = generator - 1, modulo the odd count.
         let shift = (u64::from(generator) + u64::from(count) - 1) * u64::from(count).div_ceil(2);
-        let half_pixels = |i: u64| S::from_f64(2.0 * filter_quantile((i as f64 + 0.5) / f64::from(count)));
+        let half_pixels =
+            |i: u64| S::from_f64(2.0 * filter_quantile((i as f64 + 0.5) / f64::from(count)));
         let row = |column: u64| {
             let row = (column * u64::from(generator) + shift) % u64::from(count);
             Row {
@@ -155,7 +162,8 @@ impl<S: Scalar> Filter<S> {
 fn rank1_generator(count: u32) -> u32 {
     let around = |x: u64| x.min(u64::from(count) - x).pow(2);
     let distance = |g: u32| {
-        let points = (1..u64::from(count)).map(|i| around(i) + around(i * u64::from(g) % u64::from(count)));
+        let points =
+            (1..u64::from(count)).map(|i| around(i) + around(i * u64::from(g) % u64::from(count)));
         points.min().unwrap_or(0)
     };
     let one_a_row = |g: &u32| greatest_common_divisor(*g, count) == 1;
@@ -195,30 +203,40 @@ mod tests {
     fn the_weights_sum_to_one() {
         for antialiasing in [0, 1, 2, 5, 32] {
             for sampling in [Sampling::Lattice, Sampling::Importance] {
-                let settings = RenderSettings { antialiasing, sampling, ..RenderSettings::default() };
+                let settings =
+                    RenderSettings { antialiasing, sampling, ..RenderSettings::default() };
                 let filter = Filter::<f64>::new(&settings);
                 let rows = filter.rows.iter();
-                let sum: f64 = rows.map(|r| r.weight * r.samples.iter().map(|s| s.weight).sum::<f64>()).sum();
+                let sum: f64 =
+                    rows.map(|r| r.weight * r.samples.iter().map(|s| s.weight).sum::<f64>()).sum();
                 assert!((sum - 1.0).abs() < 1e-13, "{sampling:?} {antialiasing}: {sum}");
                 let count: usize = filter.rows.iter().map(|row| row.samples.len()).sum();
-                assert_eq!(count, settings.rays_per_pixel() as usize, "{sampling:?} {antialiasing}");
+                assert_eq!(
+                    count,
+                    settings.rays_per_pixel() as usize,
+                    "{sampling:?} {antialiasing}"
+                );
             }
         }
     }
 
-    /// Catches a shift that breaks the symmetry, a generator that puts two samples into one row, and
-    /// a place outside of the filter.
+    /// Catches a shift that breaks the symmetry, a generator that puts two samples into one row,
+    /// and a place outside of the filter.
     #[test]
     fn importance_samples_are_symmetric_and_in_rows_of_their_own() {
         for count in [1, 5, 9, 13, 25, 41, 145, 289, 1089] {
             let mut places = importance(count);
             assert!(places.iter().all(|(x, y)| x.abs() < 1.0 && y.abs() < 1.0));
             for (x, y) in &places {
-                let opposite = places.iter().any(|(a, b)| (a + x).abs() < 1e-15 && (b + y).abs() < 1e-15);
+                let opposite =
+                    places.iter().any(|(a, b)| (a + x).abs() < 1e-15 && (b + y).abs() < 1e-15);
                 assert!(opposite, "{count}: ({x}, {y}) has no opposite");
             }
             places.sort_by(|a, b| a.1.total_cmp(&b.1));
-            assert!(places.windows(2).all(|pair| pair[0].1 < pair[1].1), "{count}: two samples in a row");
+            assert!(
+                places.windows(2).all(|pair| pair[0].1 < pair[1].1),
+                "{count}: two samples in a row"
+            );
         }
     }
 
@@ -228,7 +246,8 @@ mod tests {
         // Simpson's rule over the filter in one coordinate.
         let steps = 2000;
         let simpson = |f: &dyn Fn(f64) -> f64| -> f64 {
-            let weight = |i: i32| if i == 0 || i == steps { 1.0 } else { f64::from(2 + 2 * (i % 2)) };
+            let weight =
+                |i: i32| if i == 0 || i == steps { 1.0 } else { f64::from(2 + 2 * (i % 2)) };
             (0..=steps).map(|i| weight(i) * f(f64::from(i) / f64::from(steps))).sum()
         };
         let filter = |x: f64| libm::exp(-x * x / 0.64);
@@ -237,8 +256,16 @@ mod tests {
         let found = |of: fn(&(f64, f64)) -> f64| {
             places.iter().map(of).map(|x| x * x).sum::<f64>() / places.len() as f64
         };
-        assert!((found(|p| p.0) - moment).abs() < 1e-6, "{} in x, {moment} expected", found(|p| p.0));
-        assert!((found(|p| p.1) - moment).abs() < 1e-6, "{} in y, {moment} expected", found(|p| p.1));
+        assert!(
+            (found(|p| p.0) - moment).abs() < 1e-6,
+            "{} in x, {moment} expected",
+            found(|p| p.0)
+        );
+        assert!(
+            (found(|p| p.1) - moment).abs() < 1e-6,
+            "{} in y, {moment} expected",
+            found(|p| p.1)
+        );
     }
 
     /// Catches a search that is content with less: the best squared distances, found by trying all.

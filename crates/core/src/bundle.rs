@@ -1,9 +1,11 @@
-//! Rays through one point: all that leave the eye, that a plane mirrors straight from there, or that look at one light.
+//! Rays through one point: all that leave the eye, that a plane mirrors straight from there, or
+//! that look at one light.
 //!
-//! Seen from that point a primitive fills a cone of directions. Whether a ray is outside of the cone is one dot
-//! product; only the others are tried. Mostly the rays of a packet are so close together that one of them can be held
-//! against many cones at once, each wider by as much as the others may be apart from it. The cones are wider than the
-//! primitives by more than the errors of what is tried, so they change no picture, barring underflow.
+//! Seen from that point a primitive fills a cone of directions. Whether a ray is outside of the
+//! cone is one dot product; only the others are tried. Mostly the rays of a packet are so close
+//! together that one of them can be held against many cones at once, each wider by as much as the
+//! others may be apart from it. The cones are wider than the primitives by more than the errors of
+//! what is tried, so they change no picture, barring underflow.
 
 use crate::lane::{Lane, Mask, Scalar};
 use crate::scene::{self, Scene};
@@ -11,12 +13,14 @@ use crate::shapes::MARGIN;
 use crate::vector::Vector;
 use glam::DVec3;
 
-/// A cone for each primitive that is not a plane: spheres, triangles, cylinders, each in file order.
+/// A cone for each primitive that is not a plane: spheres, triangles, cylinders, each in file
+/// order.
 #[derive(Clone, Debug)]
 pub(crate) struct Bundle<S> {
     blocks: Vec<Block<S>>,
-    /// What a unit of a ray's length adds to its cosine with all axes: its end is known the less exactly, the farther it
-    /// is, and this counts the more, the nearer a primitive is to the point.
+    /// What a unit of a ray's length adds to its cosine with all axes: its end is known the less
+    /// exactly, the farther it is, and this counts the more, the nearer a primitive is to the
+    /// point.
     widening: S,
 }
 
@@ -24,8 +28,8 @@ pub(crate) struct Bundle<S> {
 #[derive(Clone, Debug)]
 struct Block<S> {
     cones: Vec<Cone<S>>,
-    /// The same, each wider by `SPREAD` and by `SLACK`: for rays so close together that one of them stands for all. What
-    /// `f32` loses is little beside that.
+    /// The same, each wider by `SPREAD` and by `SLACK`: for rays so close together that one of them
+    /// stands for all. What `f32` loses is little beside that.
     wider: Cone<Eight>,
 }
 
@@ -47,8 +51,8 @@ fn spread_cosine() -> f64 {
     (1.0 - SPREAD * SPREAD).sqrt()
 }
 
-/// By how much lengths may widen the cones of such rays: in `f32`, of rays up to 100 times as long as the nearest
-/// primitive is far from the point.
+/// By how much lengths may widen the cones of such rays: in `f32`, of rays up to 100 times as long
+/// as the nearest primitive is far from the point.
 const SLACK: f64 = 1.0 / 1024.0;
 
 /// Of a cone that holds all directions.
@@ -60,8 +64,8 @@ impl<S: Scalar> Bundle<S> {
         Self::around(scene, point, 0.0)
     }
 
-    /// The cones as `mirror` shows them to `eye`: what it sends on comes straight from the eye's image behind it, but for
-    /// the roundings of a hit, of the ray's start and of its direction.
+    /// The cones as `mirror` shows them to `eye`: what it sends on comes straight from the eye's
+    /// image behind it, but for the roundings of a hit, of the ray's start and of its direction.
     pub(crate) fn mirrored(scene: &Scene, eye: DVec3, mirror: &scene::Plane) -> Self {
         let normal = scene::unit(mirror.normal);
         let image = eye - normal * (2.0 * (eye - mirror.point).dot(normal));
@@ -90,9 +94,10 @@ impl<S: Scalar> Bundle<S> {
         }
     }
 
-    /// Shows `found` each primitive whose cone some ray of `wanted` is in, by its place among those that are not planes,
-    /// in order, and these rays; `found` returns the rays that still want to know. The rays' unit directions away from
-    /// the point, and their lengths, are `(direction, length)`.
+    /// Shows `found` each primitive whose cone some ray of `wanted` is in, by its place among those
+    /// that are not planes, in order, and these rays; `found` returns the rays that still want to
+    /// know. The rays' unit directions away from the point, and their lengths, are `(direction,
+    /// length)`.
     #[inline(always)]
     pub(crate) fn met<L: Lane<Scalar = S>>(
         &self,
@@ -144,7 +149,8 @@ impl<S: Scalar> Cone<S> {
 
 impl<S: Scalar> Block<S> {
     fn new(cones: &[Cone<S>]) -> Self {
-        let side_by_side = |number: fn(&Cone<S>) -> f32| Eight::from_fn(|i| cones.get(i).map_or(0.0, number));
+        let side_by_side =
+            |number: fn(&Cone<S>) -> f32| Eight::from_fn(|i| cones.get(i).map_or(0.0, number));
         let x = side_by_side(|cone| cone.axis.x.to_f32());
         let y = side_by_side(|cone| cone.axis.y.to_f32());
         let z = side_by_side(|cone| cone.axis.z.to_f32());
@@ -159,7 +165,8 @@ impl<S: Scalar> Block<S> {
             return EVERYTHING;
         }
         let sum_of_angles = cosine * spread_cosine() - (1.0 - cosine * cosine).sqrt() * SPREAD;
-        // The angle between rays so close is known to 13 / `SPREAD` roundings, all else to 20: of `f32`, at worst.
+        // The angle between rays so close is known to 13 / `SPREAD` roundings, all else to 20: of
+        // `f32`, at worst.
         sum_of_angles - 8.0 * MARGIN * f32::ROUNDOFF
     }
 }
@@ -180,8 +187,8 @@ mod tests {
     use std::array::from_fn;
     use wide::{f32x8, f64x4};
 
-    /// Packets of rays next to each other, some closer together than `SPREAD` and some not: whatever the cone of any
-    /// ray holds is shown, as if each cone were asked for each ray.
+    /// Packets of rays next to each other, some closer together than `SPREAD` and some not:
+    /// whatever the cone of any ray holds is shown, as if each cone were asked for each ray.
     fn no_cone_is_left_out<L: Lane>() {
         let mut place = places();
         let (mut together, mut shown) = (0, 0);
@@ -189,8 +196,9 @@ mod tests {
             let spheres: [_; 11] = from_fn(|_| (place() * 4.0 - 2.0, 0.1 + place().x * 0.6));
             let bundle = Bundle::<L::Scalar>::of(spheres.into_iter(), place());
             let (middle, apart) = ((place() - 0.5).normalize(), 0.05 + place().x * 0.025);
-            let aside =
-                |lane: usize| if lane == 0 { DVec3::ZERO } else { (place() - 0.5).normalize() * apart };
+            let aside = |lane: usize| {
+                if lane == 0 { DVec3::ZERO } else { (place() - 0.5).normalize() * apart }
+            };
             let rays: [DVec3; 8] = from_fn(aside).map(|aside| (middle + aside).normalize());
             let of = |axis: usize| L::from_fn(|lane| Scalar::from_f64(rays[lane][axis]));
             let direction = Vector::new(of(0), of(1), of(2));
@@ -206,13 +214,15 @@ mod tests {
             let cones = bundle.blocks.iter().flat_map(|block| &block.cones);
             let expected: Vec<(usize, u32)> = (cones.enumerate())
                 .map(|(i, cone)| {
-                    let cone = Cone { axis: Vector::splat(cone.axis), cosine: L::splat(cone.cosine) };
+                    let cone =
+                        Cone { axis: Vector::splat(cone.axis), cosine: L::splat(cone.cosine) };
                     (i, cone.holds(direction, widening).bits())
                 })
                 .filter(|&(_, met)| met != 0)
                 .collect();
             assert_eq!(found, expected);
-            together += usize::from(rays[..L::LANES].iter().all(|ray| ray.dot(rays[0]) > spread_cosine()));
+            together +=
+                usize::from(rays[..L::LANES].iter().all(|ray| ray.dot(rays[0]) > spread_cosine()));
             shown += found.len();
         }
         // Neither nothing nor everything.
@@ -220,13 +230,14 @@ mod tests {
         assert!((20_000..500_000).contains(&shown), "{shown}");
     }
 
-    /// A ray at the edge of a cone that its length widens as much as may be, tested by one as far from it as may be and
-    /// on the far side.
+    /// A ray at the edge of a cone that its length widens as much as may be, tested by one as far
+    /// from it as may be and on the far side.
     fn the_widest_cone_holds_the_farthest_ray<L: Lane>() {
         for radius in [0.01, 0.1, 0.5, 0.9] {
             let bundle = Bundle::<L::Scalar>::of([(DVec3::Z, radius)].into_iter(), DVec3::ZERO);
             let edge = (bundle.blocks[0].cones[0].cosine.to_f64() - 0.98 * SLACK).acos();
-            let rays = [edge + 0.999 * SPREAD.asin(), edge].map(|angle| [angle.sin(), 0.0, angle.cos()]);
+            let rays =
+                [edge + 0.999 * SPREAD.asin(), edge].map(|angle| [angle.sin(), 0.0, angle.cos()]);
             let of = |axis: usize| L::from_fn(|lane| Scalar::from_f64(rays[lane.min(1)][axis]));
             let length = L::literal(0.99 * SLACK / bundle.widening.to_f64());
             let mut found = Vec::new();

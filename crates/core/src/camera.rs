@@ -43,6 +43,9 @@ impl<S: Scalar> Camera<S> {
     #[inline(always)]
     pub(crate) fn ray<L: Lane<Scalar = S>>(&self, right: L, down: L) -> Ray<L> {
         let across = Vector::splat(self.right) * right + Vector::splat(self.down) * down;
-        Ray { origin: Vector::splat(self.position), direction: (Vector::splat(self.forward) + across).unit() }
+        Ray {
+            origin: Vector::splat(self.position),
+            direction: (Vector::splat(self.forward) + across).unit(),
+        }
     }
 }

@@ -36,13 +36,15 @@ impl Caster {
         Ok(Self::of(scene, arithmetic.into()))
     }
 
-    /// Not generic, so that all that is compiled for it is compiled in this crate, and in none that uses it.
+    /// Not generic, so that all that is compiled for it is compiled in this crate, and in none that
+    /// uses it.
     fn of(scene: &Scene, arithmetic: Arithmetic) -> Self {
         Self(arithmetic.select(scene))
     }
 
-    /// The nearest hit of the ray from `origin` in `direction`, which may have any length but 0. Both
-    /// are first rounded to the precision. A zero direction hits nothing, nor does what is not finite.
+    /// The nearest hit of the ray from `origin` in `direction`, which may have any length but 0.
+    /// Both are first rounded to the precision. A zero direction hits nothing, nor does what is not
+    /// finite.
     #[must_use]
     pub fn nearest_hit(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
         if !(origin.is_finite() && direction.is_finite()) {
@@ -74,12 +76,14 @@ pub(crate) trait Cast {
 
 impl<S: Scalar, F: Family> Cast for World<S, F> {
     fn nearest_hit(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
-        // The longest component is brought near 1 by a power of two, which rounds nothing: the squares
-        // of a very long or short direction would over- or underflow. The renderer's own are unit, or
-        // reach from a point to a light.
+        // The longest component is brought near 1 by a power of two, which rounds nothing: the
+        // squares of a very long or short direction would over- or underflow. The renderer's own
+        // are unit, or reach from a point to a light.
         let (_, exponent) = libm::frexp(direction.abs().max_element());
-        let ray =
-            Ray::<S> { origin: Vector::rounded(origin), direction: Vector::rounded(near_one(direction)) };
+        let ray = Ray::<S> {
+            origin: Vector::rounded(origin),
+            direction: Vector::rounded(near_one(direction)),
+        };
         let hit = self.primitives.nearest::<S, F>(&ray, true, None);
         hit.exists().then(|| {
             let at = self.primitives.surface::<S, F>(hit.primitive, &ray, hit.t);
@@ -94,6 +98,9 @@ impl<S: Scalar, F: Family> Cast for World<S, F> {
 
     fn color(&self, origin: DVec3, direction: DVec3) -> [f64; 3] {
         let direction = Vector::<S>::rounded(direction).unit();
-        self.trace(Ray { origin: Vector::rounded(origin), direction }, true, false).color.widened().to_array()
+        self.trace(Ray { origin: Vector::rounded(origin), direction }, true, false)
+            .color
+            .widened()
+            .to_array()
     }
 }

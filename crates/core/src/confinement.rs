@@ -1,10 +1,12 @@
 //! What planes keep apart: no ray crosses one, since it ends there.
 //!
-//! So if all rays start at the eye, everything they ever reach is on the eye's side of every plane. A light on the
-//! other side lights nothing, and one on this side is hidden by no plane, since what is on one side is convex.
+//! So if all rays start at the eye, everything they ever reach is on the eye's side of every plane.
+//! A light on the other side lights nothing, and one on this side is hidden by no plane, since what
+//! is on one side is convex.
 //!
-//! That holds for points. A computed point may be some roundings behind a plane that it is next to, and would then be
-//! in its shadow: so this is not only a saving but part of what the robust formulas mean, in every search.
+//! That holds for points. A computed point may be some roundings behind a plane that it is next to,
+//! and would then be in its shadow: so this is not only a saving but part of what the robust
+//! formulas mean, in every search.
 
 use crate::scene::{Plane, Scene, unit};
 use crate::shapes::MARGIN;
@@ -19,8 +21,8 @@ enum Side {
     Unknown,
 }
 
-/// The planes, by number, that may hide a light from what rays from `eye` reach; none if the light lights nothing
-/// of that. Without an `eye`, rays may start anywhere.
+/// The planes, by number, that may hide a light from what rays from `eye` reach; none if the light
+/// lights nothing of that. Without an `eye`, rays may start anywhere.
 pub(crate) fn hiding_planes(
     scene: &Scene,
     light: DVec3,

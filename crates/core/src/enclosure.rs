@@ -1,4 +1,5 @@
-//! Spheres around triangles: rays that come near none need not be sorted by axis, which trying a triangle takes.
+//! Spheres around triangles: rays that come near none need not be sorted by axis, which trying a
+//! triangle takes.
 
 use crate::lane::{Lane, Scalar};
 use crate::ray::Ray;
@@ -28,8 +29,9 @@ impl<S: Scalar> Enclosure<S> {
         }
     }
 
-    /// Whether the whole line of a ray of unit direction comes near the triangle. Its distance from the centre is known to
-    /// 17 roundings of the coordinates; a hit is off by no more than the margin has left, barring underflow.
+    /// Whether the whole line of a ray of unit direction comes near the triangle. Its distance from
+    /// the centre is known to 17 roundings of the coordinates; a hit is off by no more than the
+    /// margin has left, barring underflow.
     #[inline(always)]
     pub(crate) fn may_meet<L: Lane<Scalar = S>>(&self, ray: &Ray<L>) -> L::Mask {
         let Vector { x, y, z } = ray.origin.abs();
@@ -50,8 +52,8 @@ mod tests {
     use crate::ray::miss;
     use crate::shapes::triangle::{Aim, Triangle};
 
-    /// Rays that graze the sphere where a corner of the triangle touches it: none that hits the triangle is ruled out,
-    /// and those that pass a tenth of the radius farther out are.
+    /// Rays that graze the sphere where a corner of the triangle touches it: none that hits the
+    /// triangle is ruled out, and those that pass a tenth of the radius farther out are.
     fn grazing_rays_are_told_apart<S: Scalar>() {
         let mut place = places();
         let mut hits = 0;
@@ -62,8 +64,10 @@ mod tests {
             let triangle = scene::Triangle { vertices, material: 0 };
             let (center, radius) = triangle.around();
             let aside = |v: &glam::DVec3| (*v - center).length();
-            let corner =
-                vertices.into_iter().max_by(|a, b| aside(a).total_cmp(&aside(b))).unwrap_or_default();
+            let corner = vertices
+                .into_iter()
+                .max_by(|a, b| aside(a).total_cmp(&aside(b)))
+                .unwrap_or_default();
             let outward = (corner - center).normalize();
             let along = outward.cross(place() - 0.5).normalize();
             let ray = |target: glam::DVec3| Ray::<S> {
@@ -73,7 +77,11 @@ mod tests {
 
             let grazing = ray(corner);
             grazing.by_axis(true, |order, _| {
-                let t = Triangle::<S>::new(&triangle).intersect(&grazing, &Aim::new(&grazing, order), true);
+                let t = Triangle::<S>::new(&triangle).intersect(
+                    &grazing,
+                    &Aim::new(&grazing, order),
+                    true,
+                );
                 let hit = t.lt(miss());
                 assert!(
                     !hit || Enclosure::<S>::new(&triangle).may_meet(&grazing),

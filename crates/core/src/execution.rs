@@ -10,18 +10,20 @@ pub struct Execution {
     pub arithmetic: Arithmetic,
     /// Rays side by side.
     pub lanes: Lanes,
-    /// Whether a lattice point that several pixels of a tile need is traced once; of adaptive samples it always is.
+    /// Whether a lattice point that several pixels of a tile need is traced once; of adaptive
+    /// samples it always is.
     pub share_samples: bool,
     /// Whether a ray tries what it cannot meet.
     pub search: Search,
 }
 
-/// Which primitives a ray tries. With the textbook's formulas it is always each of them: what they would find there
-/// depends on where they look.
+/// Which primitives a ray tries. With the textbook's formulas it is always each of them: what they
+/// would find there depends on where they look.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Search {
-    /// What the scene's shape does not rule out: by cones of directions around the eye, its images and the lights, and by
-    /// spheres around triangles; or, among many primitives, by a tree of boxes.
+    /// What the scene's shape does not rule out: by cones of directions around the eye, its images
+    /// and the lights, and by spheres around triangles; or, among many primitives, by a tree of
+    /// boxes.
     #[default]
     Auto,
     /// Each: the definition, to hold the other against.
@@ -39,7 +41,8 @@ pub enum Lanes {
     Wide512,
 }
 
-/// As many as fill a register of the machine that the program is built for; 256 bits if it is smaller.
+/// As many as fill a register of the machine that the program is built for; 256 bits if it is
+/// smaller.
 impl Default for Lanes {
     fn default() -> Self {
         if cfg!(target_feature = "avx512f") { Self::Wide512 } else { Self::Wide256 }

@@ -1,14 +1,15 @@
-//! What no ray reaches, since nothing sends one back: without mirrors, rays from the eye go forward, and from what they
-//! hit to the lights. All of that lies in front of the eye, or of the light that is farthest behind it; and since a half
-//! space is convex, so does everything in between.
+//! What no ray reaches, since nothing sends one back: without mirrors, rays from the eye go
+//! forward, and from what they hit to the lights. All of that lies in front of the eye, or of the
+//! light that is farthest behind it; and since a half space is convex, so does everything in
+//! between.
 
 use crate::scene::{Cylinder, Scene, Sphere, Triangle, unit};
 use crate::shapes::MARGIN;
 use glam::DVec3;
 use std::borrow::Cow;
 
-/// The scene without the spheres, triangles and cylinders that are behind all that its camera's rays reach. Those that
-/// remain keep their order, which decides between equal distances.
+/// The scene without the spheres, triangles and cylinders that are behind all that its camera's
+/// rays reach. Those that remain keep their order, which decides between equal distances.
 pub(crate) fn in_front(scene: &Scene, roundoff: f64) -> Cow<'_, Scene> {
     if scene.materials.iter().any(|material| material.reflection > 0.0) {
         return Cow::Borrowed(scene);

@@ -1,4 +1,5 @@
-//! The shapes of one kind: how their places and their numbers go together, and which are tried together.
+//! The shapes of one kind: how their places and their numbers go together, and which are tried
+//! together.
 
 use std::ops::Range;
 

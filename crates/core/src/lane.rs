@@ -12,7 +12,9 @@ use std::fmt::Debug;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 /// One truth value a lane.
-pub trait Mask: Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
+pub trait Mask:
+    Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self>
+{
     /// Whether it holds in any lane.
     fn any(self) -> bool;
     /// A bit a lane, the first lane's being the lowest.
@@ -105,7 +107,9 @@ pub trait Lane:
 }
 
 /// A lane of one: the types in which a scene is stored.
-pub trait Scalar: Lane<Scalar = Self, Mask = bool, Index = u32> + Default + Send + Sync + 'static {
+pub trait Scalar:
+    Lane<Scalar = Self, Mask = bool, Index = u32> + Default + Send + Sync + 'static
+{
     /// As many as fill 256 bits.
     type Wide256: Lane<Scalar = Self>;
     /// As many as fill 512 bits.
@@ -123,8 +127,8 @@ pub trait Scalar: Lane<Scalar = Self, Mask = bool, Index = u32> + Default + Send
     fn to_f32(self) -> f32;
 }
 
-/// An odd number near 2^32 over the golden ratio, which spreads what it multiplies (Knuth, The Art of Computer
-/// Programming 3, 1973, 6.4).
+/// An odd number near 2^32 over the golden ratio, which spreads what it multiplies (Knuth, The Art
+/// of Computer Programming 3, 1973, 6.4).
 pub(crate) const MIX: u32 = 0x9e37_79b1;
 
 impl Mask for bool {
@@ -281,8 +285,8 @@ pub(crate) fn product_error<L: Lane>(a: L, b: L, product: L) -> L {
     al * bl - (((product - ah * bh) - al * bh) - ah * bl)
 }
 
-/// `a + b - sum`, exactly, for a `sum` that is the rounded one (Knuth, The Art of Computer Programming 2,
-/// 1969).
+/// `a + b - sum`, exactly, for a `sum` that is the rounded one (Knuth, The Art of Computer
+/// Programming 2, 1969).
 #[inline(always)]
 pub(crate) fn sum_error<L: Lane>(a: L, b: L, sum: L) -> L {
     let b_part = sum - a;

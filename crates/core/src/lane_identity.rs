@@ -183,7 +183,11 @@ fn scene() -> Scene {
             material(v(1.0, 0.2, 0.1), 31, 0.0),
             material(v(0.1, 0.2, 1.0), 7, 0.9),
         ],
-        planes: vec![scene::Plane { point: v(0.0, -1.0, 0.0), normal: v(0.1, 1.0, 0.0), material: 0 }],
+        planes: vec![scene::Plane {
+            point: v(0.0, -1.0, 0.0),
+            normal: v(0.1, 1.0, 0.0),
+            material: 0,
+        }],
         spheres: vec![
             scene::Sphere { center: v(0.0, 0.0, 0.0), radius: 1.0, material: 2 },
             scene::Sphere { center: v(1.5, -0.5, 0.5), radius: 0.5, material: 1 },
@@ -220,13 +224,20 @@ fn four_lanes_give_the_bits_of_one() {
     for stride in [1, 13] {
         for down in (-39..40_i16).step_by(2) {
             for right in -39..40_i16 {
-                let places: [f32; 4] = from_fn(|i| f32::from((right + 39 + i as i16 * stride) % 79 - 39));
+                let places: [f32; 4] =
+                    from_fn(|i| f32::from((right + 39 + i as i16 * stride) % 79 - 39));
                 let down = f32::from(down);
                 let rays = camera.ray(Quad(places), Quad::splat(down));
                 let color = world.trace(rays, QuadMask([true, true, false, true]), false).color;
                 for lane in [0, 1, 3] {
-                    let found = [color.x, color.y, color.z].map(|channel| channel.0[lane].to_bits());
-                    assert_eq!(found, bits(places[lane], down), "lane {lane} at ({}, {down})", places[lane]);
+                    let found =
+                        [color.x, color.y, color.z].map(|channel| channel.0[lane].to_bits());
+                    assert_eq!(
+                        found,
+                        bits(places[lane], down),
+                        "lane {lane} at ({}, {down})",
+                        places[lane]
+                    );
                 }
             }
         }

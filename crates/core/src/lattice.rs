@@ -1,5 +1,5 @@
-//! The filter over a lattice whose points neighbouring pixels share: each point's colour goes into every pixel
-//! that needs it, in the order in which a pixel alone would add it up.
+//! The filter over a lattice whose points neighbouring pixels share: each point's colour goes into
+//! every pixel that needs it, in the order in which a pixel alone would add it up.
 
 use crate::lane::Scalar;
 use crate::samples::Colors;
@@ -7,8 +7,8 @@ use rayweave_contract::{Rgb, Tile};
 
 /// The rows of a lattice on their way into the pixels of a tile.
 ///
-/// The filter is separable. Along each row of the lattice the colours are added up for each column of pixels;
-/// these sums then serve every row of pixels that the row touches, three at the most.
+/// The filter is separable. Along each row of the lattice the colours are added up for each column
+/// of pixels; these sums then serve every row of pixels that the row touches, three at the most.
 #[derive(Debug)]
 pub(crate) struct LatticeSums<'a, S> {
     /// Of the `2 s + 1` samples across a pixel.
@@ -16,7 +16,8 @@ pub(crate) struct LatticeSums<'a, S> {
     density: usize,
     /// Of the tile, in pixels.
     width: usize,
-    /// Colours in rows of the lattice; in each row those `s` steps apart are neighbours, as the sums need them.
+    /// Colours in rows of the lattice; in each row those `s` steps apart are neighbours, as the
+    /// sums need them.
     strip: [Vec<S>; 3],
     /// Where in the strip each colour goes, in the order in which they come.
     slots: Vec<u32>,
@@ -47,20 +48,22 @@ impl<'a, S: Scalar> LatticeSums<'a, S> {
         (row * self.density + column % self.density) * (self.width + 2) + column / self.density
     }
 
-    /// Makes ready for strips of `rows` rows: the places of their points are [expected](Self::expect) next.
-    /// Colours of the last strip stay until they are overwritten.
+    /// Makes ready for strips of `rows` rows: the places of their points are
+    /// [expected](Self::expect) next. Colours of the last strip stay until they are overwritten.
     pub(crate) fn start_strip(&mut self, rows: usize) {
         self.slots.clear();
         let size = rows * self.density * (self.width + 2);
         self.strip.iter_mut().for_each(|channel| channel.resize(size, S::literal(0.0)));
     }
 
-    /// The column and row, within the strip, of the next point in the order in which colours will come.
+    /// The column and row, within the strip, of the next point in the order in which colours will
+    /// come.
     pub(crate) fn expect(&mut self, column: usize, row: usize) {
         self.slots.push(self.slot(column, row) as u32);
     }
 
-    /// Takes over the colours of the expected points, in their order; what follows them is of lanes without a point.
+    /// Takes over the colours of the expected points, in their order; what follows them is of lanes
+    /// without a point.
     pub(crate) fn fill(&mut self, colors: &Colors<S>) {
         debug_assert!(colors.channels[0].len() >= self.slots.len(), "a point without a colour");
         let [red, green, blue] = &mut self.strip;
@@ -73,16 +76,17 @@ impl<'a, S: Scalar> LatticeSums<'a, S> {
         }
     }
 
-    /// Of one channel and a row of the strip, the colours of the points `aside` steps right of each pixel centre, from that left
-    /// of the tile to that right of it: of the latter only with none, the lattice ends there. `aside` is below the density.
+    /// Of one channel and a row of the strip, the colours of the points `aside` steps right of each
+    /// pixel centre, from that left of the tile to that right of it: of the latter only with none,
+    /// the lattice ends there. `aside` is below the density.
     #[inline(always)]
     pub(crate) fn points_mut(&mut self, channel: usize, aside: usize, row: usize) -> &mut [S] {
         let first = self.slot(aside, row);
         &mut self.strip[channel][first..first + self.width + 2]
     }
 
-    /// Adds the strip's row `row`, which is row `lattice_row` of the tile's lattice, to the rows of pixels that it
-    /// touches, and writes the one that it completes.
+    /// Adds the strip's row `row`, which is row `lattice_row` of the tile's lattice, to the rows of
+    /// pixels that it touches, and writes the one that it completes.
     pub(crate) fn add_row(&mut self, row: usize, lattice_row: usize, tile: &mut Tile<'_>) {
         for channel in 0..3 {
             self.row[channel].fill(S::literal(0.0));

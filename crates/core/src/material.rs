@@ -98,7 +98,8 @@ impl<L: Lane> Finish<L> {
 pub(crate) fn power<L: Lane>(base: L, exponents: L::Index, wanted: L::Mask) -> L {
     let mut result = base;
     let mut todo = wanted;
-    // A packet sees few materials: each distinct exponent is served once, in all lanes that have it.
+    // A packet sees few materials: each distinct exponent is served once, in all lanes that have
+    // it.
     while let Some(exponent) = L::first_index(todo, exponents) {
         let here = L::index_equals(exponents, exponent);
         result = L::select(here, power_of_all(base, exponent), result);

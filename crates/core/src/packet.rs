@@ -1,7 +1,8 @@
 //! The number types of a packet: as many numbers as fill a SIMD register, by the `wide` crate.
 //!
-//! Each operation rounds as the one of a single number does, so a packet gives each lane the bits of
-//! one ray alone. Where the machine has no register of that width, `wide` uses several smaller ones.
+//! Each operation rounds as the one of a single number does, so a packet gives each lane the bits
+//! of one ray alone. Where the machine has no register of that width, `wide` uses several smaller
+//! ones.
 
 use crate::lane::{Lane, MIX, Mask};
 use wide::{f32x8, f32x16, f64x4, f64x8, u32x8, u32x16, u64x4, u64x8};
@@ -96,7 +97,8 @@ macro_rules! packet {
             }
             #[inline(always)]
             fn select_index(mask: Self, yes: $index, no: $index) -> $index {
-                // As floats: `wide` selects integers byte by byte, and AVX-512 first turns the mask into one of bytes.
+                // As floats: `wide` selects integers byte by byte, and AVX-512 first turns the mask
+                // into one of bytes.
                 mask.select(Self::from_bits(yes), Self::from_bits(no)).to_bits()
             }
             #[inline(always)]

@@ -16,10 +16,10 @@ pub enum Precision {
 
 /// What a scene asks of a number type.
 ///
-/// **Displacement.** Rays leave a surface by about 24 roundings of the coordinates across it: twelve
-/// of the point's and twelve of the shape's. Along it an outline is displaced by one rounding of its
-/// coordinates, and a ray by four of its length, which cover the eye. From a distance the picture is
-/// `distance * screen_width / focal_length` wide; of this width, that is
+/// **Displacement.** Rays leave a surface by about 24 roundings of the coordinates across it:
+/// twelve of the point's and twelve of the shape's. Along it an outline is displaced by one
+/// rounding of its coordinates, and a ray by four of its length, which cover the eye. From a
+/// distance the picture is `distance * screen_width / focal_length` wide; of this width, that is
 ///
 /// ```text
 /// 2^-24 (24 across + along + 4 distance) / (distance * screen_width / focal_length)
@@ -74,7 +74,8 @@ impl Demand {
     pub fn of(scene: &Scene) -> Self {
         let eye = scene.camera.position;
         let view = scene.camera.screen_width / scene.camera.focal_length;
-        let (mut largest, mut smallest, mut roundings) = (largest_of(eye), f64::INFINITY, 4.0 / view);
+        let (mut largest, mut smallest, mut roundings) =
+            (largest_of(eye), f64::INFINITY, 4.0 / view);
         let extents = (scene.planes.iter().map(|plane| Extent::of_plane(plane, eye)))
             .chain(scene.spheres.iter().map(|sphere| Extent::of_sphere(sphere, eye)))
             .chain(scene.triangles.iter().map(|triangle| Extent::of_triangle(triangle, eye)))
@@ -89,12 +90,15 @@ impl Demand {
         }
         let curved = scene.spheres.iter().map(|s| s.material);
         let curved = curved.chain(scene.cylinders.iter().map(|c| c.material));
-        let reflection = curved.map(|material| scene.materials[material].reflection).fold(0.0, f64::max);
-        let lights = scene.lights.iter().flat_map(|light| [largest_of(light.position), light.power]);
+        let reflection =
+            curved.map(|material| scene.materials[material].reflection).fold(0.0, f64::max);
+        let lights =
+            scene.lights.iter().flat_map(|light| [largest_of(light.position), light.power]);
         let factors = scene.materials.iter().flat_map(|m| [m.ambient, m.diffuse, m.specular]);
         Self {
             displacement: roundings / 2f64.powi(24),
-            mirrors: f64::from(scene.render.max_reflections) * libm::log2((8.0 * reflection).max(1.0)),
+            mirrors: f64::from(scene.render.max_reflections)
+                * libm::log2((8.0 * reflection).max(1.0)),
             least: if largest == 0.0 { smallest } else { smallest.min(largest) },
             extreme: lights.chain(factors).fold(largest.max(1.0), f64::max),
         }
@@ -104,8 +108,9 @@ impl Demand {
         self.extreme <= F32_RANGE.end && self.least >= F32_RANGE.start
     }
 
-    /// How many rays to follow side by side: rays of neighbours part as errors grow, and where they part too far
-    /// between curved mirrors for `f32`, a packet soon holds rays that have nothing in common.
+    /// How many rays to follow side by side: rays of neighbours part as errors grow, and where they
+    /// part too far between curved mirrors for `f32`, a packet soon holds rays that have nothing in
+    /// common.
     #[must_use]
     pub fn lanes(&self) -> Lanes {
         if self.mirrors <= F32_MIRRORS { Lanes::default() } else { Lanes::One }
@@ -153,7 +158,10 @@ impl Extent {
             distance: if above {
                 normal.dot(eye - a).abs()
             } else {
-                sides.iter().map(|&side| distance_to_segment(eye, side)).fold(f64::INFINITY, f64::min)
+                sides
+                    .iter()
+                    .map(|&side| distance_to_segment(eye, side))
+                    .fold(f64::INFINITY, f64::min)
             },
         }
     }
@@ -189,7 +197,10 @@ impl fmt::Display for Demand {
             let (from, to) = (range.start, range.end);
             write!(f, "numbers from {:e} to {extreme:e} (f32: {from:e} to {to:e})", least.min(1.0))
         } else if *mirrors > F32_MIRRORS && *displacement <= allowed {
-            write!(f, "curved mirrors multiply errors by 2^{mirrors:.0} (f32: up to 2^{F32_MIRRORS})")
+            write!(
+                f,
+                "curved mirrors multiply errors by 2^{mirrors:.0} (f32: up to 2^{F32_MIRRORS})"
+            )
         } else {
             write!(
                 f,

@@ -18,12 +18,12 @@ use crate::shapes::triangle::{self, Triangle};
 use crate::tree::{Bounds, Tree};
 use crate::vector::Vector;
 
-/// From so many bounded primitives on there is a tree: of 63 spheres that mirror each other each is tried in less time
-/// (METHODOLOGY.md), of a thousand a tree is far ahead.
+/// From so many bounded primitives on there is a tree: of 63 spheres that mirror each other each is
+/// tried in less time (METHODOLOGY.md), of a thousand a tree is far ahead.
 const TREE_PAYS: usize = 64;
 
-/// The primitives by kind. A primitive's number counts through planes, spheres, triangles and cylinders, each in
-/// file order: it decides between equal distances.
+/// The primitives by kind. A primitive's number counts through planes, spheres, triangles and
+/// cylinders, each in file order: it decides between equal distances.
 #[derive(Debug)]
 pub(crate) struct Primitives<S> {
     planes: Vec<Plane<S>>,
@@ -34,7 +34,8 @@ pub(crate) struct Primitives<S> {
     triangles_and_others: [Leaf; 2],
     /// Over these, where there are enough of them.
     tree: Option<Tree<S>>,
-    /// Around each triangle, where the nearest hit is asked for rays of unit direction only and no tree finds it.
+    /// Around each triangle, where the nearest hit is asked for rays of unit direction only and no
+    /// tree finds it.
     around_triangles: Vec<Enclosure<S>>,
     /// The material of each primitive, by its number.
     materials: Vec<usize>,
@@ -55,8 +56,8 @@ impl<L: Lane> Hit<L> {
         self.t.lt(miss())
     }
 
-    /// Another hit is nearer if its `t` is smaller; an equal one, if its number is. Where numbers only grow, the
-    /// second question need not be asked.
+    /// Another hit is nearer if its `t` is smaller; an equal one, if its number is. Where numbers
+    /// only grow, the second question need not be asked.
     #[inline(always)]
     fn offer<const ORDERED: bool>(&mut self, number: u32, t: L) {
         let mut nearer = t.lt(self.t);
@@ -112,8 +113,8 @@ impl<S: Scalar> Primitives<S> {
         self.tree.as_ref().map(Tree::leaves)
     }
 
-    /// From now on all rays of which the nearest hit is asked have unit direction. No shadow ray asks
-    /// what it comes near: where there are enclosures, lights have bundles.
+    /// From now on all rays of which the nearest hit is asked have unit direction. No shadow ray
+    /// asks what it comes near: where there are enclosures, lights have bundles.
     pub(crate) fn enclose_triangles(&mut self, scene: &Scene) {
         self.around_triangles = scene.triangles.iter().map(Enclosure::new).collect();
     }
@@ -152,12 +153,16 @@ impl<S: Scalar> Primitives<S> {
         }
     }
 
-    /// What the shapes of each kind that is there ask of a ray; triangles, if `order` tells the axis along which it is
-    /// longest.
+    /// What the shapes of each kind that is there ask of a ray; triangles, if `order` tells the
+    /// axis along which it is longest.
     #[inline(always)]
     fn aim<L: Lane<Scalar = S>>(&self, ray: &Ray<L>, order: Option<AxisOrder>) -> Aim<L> {
         Aim {
-            sphere: if self.spheres.shapes.is_empty() { sphere::Aim::none() } else { sphere::Aim::new(ray) },
+            sphere: if self.spheres.shapes.is_empty() {
+                sphere::Aim::none()
+            } else {
+                sphere::Aim::new(ray)
+            },
             triangle: match order {
                 Some(order) if !self.triangles.shapes.is_empty() => triangle::Aim::new(ray, order),
                 _ => triangle::Aim::none(),
@@ -170,8 +175,9 @@ impl<S: Scalar> Primitives<S> {
         }
     }
 
-    /// The smallest `t` of the rays of `wanted`; of equal ones that of the lowest number. Of rays that all come from one
-    /// point `from` knows what they may meet, and how far away from it they start; their directions are of unit length.
+    /// The smallest `t` of the rays of `wanted`; of equal ones that of the lowest number. Of rays
+    /// that all come from one point `from` knows what they may meet, and how far away from it they
+    /// start; their directions are of unit length.
     #[inline(always)]
     pub(crate) fn nearest<L: Lane<Scalar = S>, F: Family>(
         &self,
@@ -205,8 +211,8 @@ impl<S: Scalar> Primitives<S> {
         nearest
     }
 
-    /// Shows `leaf` all bounded primitives: triangles for each axis along which rays are longest, if the formulas ask for
-    /// it.
+    /// Shows `leaf` all bounded primitives: triangles for each axis along which rays are longest,
+    /// if the formulas ask for it.
     #[inline(always)]
     fn by_axis<L: Lane<Scalar = S>, F: Family>(
         &self,
@@ -227,7 +233,11 @@ impl<S: Scalar> Primitives<S> {
             return leaf(triangles, &others_aim, wanted);
         }
         ray.by_axis(self.near_triangles(ray, wanted), |order, wanted| {
-            leaf(triangles, &Aim { triangle: triangle::Aim::new(ray, order), ..others_aim }, wanted);
+            leaf(
+                triangles,
+                &Aim { triangle: triangle::Aim::new(ray, order), ..others_aim },
+                wanted,
+            );
         });
     }
 
@@ -238,9 +248,15 @@ impl<S: Scalar> Primitives<S> {
         wanted & others.iter().fold(first.may_meet(ray), |near, around| near | around.may_meet(ray))
     }
 
-    /// Where rays of `wanted` hit the primitive in place `i` of all that are not planes, without a tree.
+    /// Where rays of `wanted` hit the primitive in place `i` of all that are not planes, without a
+    /// tree.
     #[inline(always)]
-    fn bounded<L: Lane<Scalar = S>, F: Family>(&self, mut i: usize, ray: &Ray<L>, wanted: L::Mask) -> L {
+    fn bounded<L: Lane<Scalar = S>, F: Family>(
+        &self,
+        mut i: usize,
+        ray: &Ray<L>,
+        wanted: L::Mask,
+    ) -> L {
         if i < self.spheres.shapes.len() {
             return self.sphere::<L, F>(i, ray, wanted);
         }
@@ -251,8 +267,8 @@ impl<S: Scalar> Primitives<S> {
         self.cylinder::<L, F>(i - self.triangles.shapes.len(), ray, wanted)
     }
 
-    // Where rays of `wanted` hit the shape of a kind in place `i`. Called where few rays come, and so not copied there:
-    // every copy is compiled for each number type and formula.
+    // Where rays of `wanted` hit the shape of a kind in place `i`. Called where few rays come, and
+    // so not copied there: every copy is compiled for each number type and formula.
 
     #[inline(never)]
     fn sphere<L: Lane<Scalar = S>, F: Family>(&self, i: usize, ray: &Ray<L>, wanted: L::Mask) -> L {
@@ -260,7 +276,12 @@ impl<S: Scalar> Primitives<S> {
     }
 
     #[inline(never)]
-    fn triangle<L: Lane<Scalar = S>, F: Family>(&self, i: usize, ray: &Ray<L>, wanted: L::Mask) -> L {
+    fn triangle<L: Lane<Scalar = S>, F: Family>(
+        &self,
+        i: usize,
+        ray: &Ray<L>,
+        wanted: L::Mask,
+    ) -> L {
         let mut nearest = miss();
         ray.by_axis(wanted, |order, wanted| {
             let aim = triangle::Aim::new(ray, order);
@@ -271,7 +292,12 @@ impl<S: Scalar> Primitives<S> {
     }
 
     #[inline(never)]
-    fn cylinder<L: Lane<Scalar = S>, F: Family>(&self, i: usize, ray: &Ray<L>, wanted: L::Mask) -> L {
+    fn cylinder<L: Lane<Scalar = S>, F: Family>(
+        &self,
+        i: usize,
+        ray: &Ray<L>,
+        wanted: L::Mask,
+    ) -> L {
         F::cylinder(&self.cylinders.shapes[i], ray, &cylinder::Aim::new(ray), wanted)
     }
 
@@ -317,7 +343,8 @@ impl<S: Scalar> Primitives<S> {
             (Some(tree), _) if F::FAITHFUL => ray.by_heading(free, |heading, wanted| {
                 let aim = self.aim(ray, Some(heading.order));
                 tree.visit(ray, heading, wanted, limit, |leaf, reached| {
-                    free = free & !(reached & !self.free_in::<L, F>(leaf, ray, &aim, limit, reached));
+                    free =
+                        free & !(reached & !self.free_in::<L, F>(leaf, ray, &aim, limit, reached));
                     (wanted & free, limit)
                 });
             }),
@@ -400,7 +427,8 @@ impl<S: Scalar> Primitives<S> {
             triangle.surface(near)
         } else {
             let cylinders = &self.cylinders;
-            cylinders.shapes[cylinders.places[(number - cylinders.first) as usize] as usize].surface(near)
+            cylinders.shapes[cylinders.places[(number - cylinders.first) as usize] as usize]
+                .surface(near)
         }
     }
 }

@@ -72,7 +72,8 @@ impl<L: Lane> Ray<L> {
         }
     }
 
-    /// Shows `group` the rays of `wanted` by their heading: those of a packet of neighbours mostly have one.
+    /// Shows `group` the rays of `wanted` by their heading: those of a packet of neighbours mostly
+    /// have one.
     #[inline(always)]
     pub(crate) fn by_heading(&self, wanted: L::Mask, mut group: impl FnMut(Heading, L::Mask)) {
         let direction = self.direction.to_array();
@@ -95,11 +96,22 @@ impl<L: Lane> Ray<L> {
 mod tests {
     use super::*;
 
-    /// Every ray is in one group, whatever its components: that of the longest, if they are numbers.
+    /// Every ray is in one group, whatever its components: that of the longest, if they are
+    /// numbers.
     #[test]
     fn every_ray_has_one_axis() {
-        let numbers =
-            [0.0, -0.0, 1.0, -1.0, 0.5, 1e-40, f32::MAX, f32::INFINITY, f32::NEG_INFINITY, f32::NAN];
+        let numbers = [
+            0.0,
+            -0.0,
+            1.0,
+            -1.0,
+            0.5,
+            1e-40,
+            f32::MAX,
+            f32::INFINITY,
+            f32::NEG_INFINITY,
+            f32::NAN,
+        ];
         for (x, y, z) in (numbers.iter().flat_map(|x| numbers.map(|y| (*x, y))))
             .flat_map(|(x, y)| numbers.map(|z| (x, y, z)))
         {
@@ -110,7 +122,10 @@ mod tests {
             assert_eq!(groups.len(), 1, "{direction:?}: {groups:?}");
             assert_eq!(groups[0], Heading::of(direction.to_array()).order, "{direction:?}");
             let [a, b, longest] = groups[0].map(|axis| direction.to_array()[axis].abs());
-            assert!([a, b, longest].iter().any(|c| c.is_nan()) || longest >= f32::max(a, b), "{direction:?}");
+            assert!(
+                [a, b, longest].iter().any(|c| c.is_nan()) || longest >= f32::max(a, b),
+                "{direction:?}"
+            );
         }
     }
 }

@@ -4,23 +4,32 @@ use crate::scene::RenderSettings;
 
 /// The primary rays that the tracer follows for a tile of `width` x `height` pixels.
 ///
-/// On a lattice of density `s` a tile that shares its samples takes `(s (width + 1) + 1) (s (height + 1) + 1)` of
-/// them: `s` steps a pixel, and half a pixel more on each side, for the filter reaches into the neighbours. What
-/// neighbouring tiles have in common each of them traces for itself, so the smaller the tiles of a picture, the more
-/// rays: the least is a single tile, the most a tile for each pixel, which is as if nothing were shared.
+/// On a lattice of density `s` a tile that shares its samples takes `(s (width + 1) + 1) (s (height
+/// + 1) + 1)` of them: `s` steps a pixel, and half a pixel more on each side, for the filter
+/// reaches into the neighbours. What neighbouring tiles have in common each of them traces for
+/// itself, so the smaller the tiles of a picture, the more rays: the least is a single tile, the
+/// most a tile for each pixel, which is as if nothing were shared.
 ///
-/// Without sharing, and where no two pixels have a sample in common (one ray a pixel, or
-/// [by importance](crate::Sampling::Importance)), it is [`RenderSettings::rays_per_pixel`] for each pixel.
+/// Without sharing, and where no two pixels have a sample in common (one ray a pixel, or [by
+/// importance](crate::Sampling::Importance)), it is [`RenderSettings::rays_per_pixel`] for each
+/// pixel.
 ///
-/// `None` for an [adaptive](RenderSettings::adaptive) lattice: how many of its points are traced depends on what is
-/// seen. Reflected rays and those to the lights come on top; their number depends on that always.
+/// `None` for an [adaptive](RenderSettings::adaptive) lattice: how many of its points are traced
+/// depends on what is seen. Reflected rays and those to the lights come on top; their number
+/// depends on that always.
 #[must_use]
-pub fn primary_rays(width: u32, height: u32, settings: &RenderSettings, share_samples: bool) -> Option<u64> {
+pub fn primary_rays(
+    width: u32,
+    height: u32,
+    settings: &RenderSettings,
+    share_samples: bool,
+) -> Option<u64> {
     if !settings.has_lattice() || (!share_samples && !settings.adaptive) {
         return Some(u64::from(width) * u64::from(height) * u64::from(settings.rays_per_pixel()));
     }
     // Of no pixels there is nothing that reaches beyond them.
-    let points = |pixels| if pixels == 0 { 0 } else { lattice_points(pixels, settings.antialiasing) };
+    let points =
+        |pixels| if pixels == 0 { 0 } else { lattice_points(pixels, settings.antialiasing) };
     (!settings.adaptive).then(|| points(width) * points(height))
 }
 
@@ -53,7 +62,9 @@ mod tests {
                 for (x, y) in (0..width).flat_map(|x| (0..height).map(move |y| (x, y))) {
                     // Whole numbers of half steps, of which a pixel has `2 s`.
                     let centre = |pixel: u32| i64::from(2 * density * pixel);
-                    places.extend(samples.iter().map(|&(a, b)| (centre(x) + a as i64, centre(y) + b as i64)));
+                    places.extend(
+                        samples.iter().map(|&(a, b)| (centre(x) + a as i64, centre(y) + b as i64)),
+                    );
                 }
                 let found = primary_rays(width, height, &settings, true);
                 assert_eq!(found, Some(places.len() as u64), "{width} x {height} at {density}");
@@ -65,8 +76,14 @@ mod tests {
     fn nothing_shared_is_every_pixel_s_own_samples() {
         assert_eq!(primary_rays(7, 3, &settings(2, Sampling::Lattice), false), Some(21 * 25));
         for share_samples in [false, true] {
-            assert_eq!(primary_rays(7, 3, &settings(0, Sampling::Lattice), share_samples), Some(21));
-            assert_eq!(primary_rays(7, 3, &settings(2, Sampling::Importance), share_samples), Some(21 * 13));
+            assert_eq!(
+                primary_rays(7, 3, &settings(0, Sampling::Lattice), share_samples),
+                Some(21)
+            );
+            assert_eq!(
+                primary_rays(7, 3, &settings(2, Sampling::Importance), share_samples),
+                Some(21 * 13)
+            );
             assert_eq!(primary_rays(0, 3, &settings(2, Sampling::Lattice), share_samples), Some(0));
         }
     }

@@ -6,8 +6,8 @@ use crate::vector::Vector;
 use std::iter::repeat_n;
 use std::ops::Range;
 
-/// Places, in half steps of the filter's: from the middle of the picture or, of a filter's samples, from the centre of a
-/// pixel.
+/// Places, in half steps of the filter's: from the middle of the picture or, of a filter's samples,
+/// from the centre of a pixel.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Places<S> {
     right: Vec<S>,
@@ -29,7 +29,8 @@ impl<S: Scalar> Places<S> {
         self.down.push(down);
     }
 
-    /// Adds, for each pixel's centre (one of `rights`, `down`) in turn, the places of all of its `samples` in their order.
+    /// Adds, for each pixel's centre (one of `rights`, `down`) in turn, the places of all of its
+    /// `samples` in their order.
     #[inline(always)]
     pub(crate) fn push_around(&mut self, rights: &[S], down: S, samples: &Self) {
         // With one sample a pixel the general loop is a noticeable share of a rendering.
@@ -44,13 +45,15 @@ impl<S: Scalar> Places<S> {
         }
     }
 
-    /// The places from number `first` on: right and down. Lanes beyond the last repeat some of them.
+    /// The places from number `first` on: right and down. Lanes beyond the last repeat some of
+    /// them.
     #[inline(always)]
     pub(crate) fn load<L: Lane<Scalar = S>>(&self, first: usize) -> (L, L) {
         if first + L::LANES <= self.len() {
             return (L::load(&self.right[first..]), L::load(&self.down[first..]));
         }
-        let filled = |numbers: &[S]| L::from_fn(|lane| numbers[first + lane % (numbers.len() - first)]);
+        let filled =
+            |numbers: &[S]| L::from_fn(|lane| numbers[first + lane % (numbers.len() - first)]);
         (filled(&self.right), filled(&self.down))
     }
 }
@@ -86,7 +89,11 @@ impl<S: Scalar> Colors<S> {
     }
 
     #[inline(always)]
-    pub(crate) fn store<L: Lane<Scalar = S>>(&mut self, first: usize, Traced { color, trail }: Traced<L>) {
+    pub(crate) fn store<L: Lane<Scalar = S>>(
+        &mut self,
+        first: usize,
+        Traced { color, trail }: Traced<L>,
+    ) {
         let [red, green, blue] = &mut self.channels;
         color.x.store(&mut red[first..]);
         color.y.store(&mut green[first..]);

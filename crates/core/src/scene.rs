@@ -56,9 +56,9 @@ pub struct RenderSettings {
     pub antialiasing: u32,
     /// Where in and around a pixel these samples lie.
     pub sampling: Sampling,
-    /// Whether lattice points between pixel centres are traced only where those centres differ: in what is hit,
-    /// which lights it sees, or the same of what it mirrors. Elsewhere they are interpolated. Of no effect on other
-    /// samples than the lattice's.
+    /// Whether lattice points between pixel centres are traced only where those centres differ: in
+    /// what is hit, which lights it sees, or the same of what it mirrors. Elsewhere they are
+    /// interpolated. Of no effect on other samples than the lattice's.
     pub adaptive: bool,
 }
 
@@ -213,8 +213,9 @@ impl Scene {
     /// spheres, triangles, cylinders.
     pub fn check(&self) -> Result<(), SceneError> {
         let count = self.materials.len();
-        let known =
-            |material: usize| expect("material", material < count, "the index of a material", material);
+        let known = |material: usize| {
+            expect("material", material < count, "the index of a material", material)
+        };
         locate("camera", self.camera.check())?;
         locate("render", self.render.check())?;
         check_all("light", &self.lights, Light::check)?;
@@ -271,7 +272,12 @@ impl RenderSettings {
     pub fn check(&self) -> Result<(), Fault> {
         color("background", self.background)?;
         let reflections = self.max_reflections;
-        expect("max_reflections", reflections <= MAX_REFLECTIONS, "an integer in 0..=64", reflections)?;
+        expect(
+            "max_reflections",
+            reflections <= MAX_REFLECTIONS,
+            "an integer in 0..=64",
+            reflections,
+        )?;
         let density = self.antialiasing;
         expect("antialiasing", density <= MAX_ANTIALIASING, "an integer in 0..=32", density)
     }
@@ -302,7 +308,12 @@ impl Material {
         not_negative("diffuse", self.diffuse)?;
         not_negative("specular", self.specular)?;
         let exponent = self.shininess;
-        expect("shininess", (1..=MAX_SHININESS).contains(&exponent), "an integer in 1..=1024", exponent)?;
+        expect(
+            "shininess",
+            (1..=MAX_SHININESS).contains(&exponent),
+            "an integer in 1..=1024",
+            exponent,
+        )?;
         let share = self.reflection;
         expect("reflection", (0.0..=1.0).contains(&share), "a number in 0..=1", share)
     }
@@ -377,7 +388,10 @@ fn check_all<T>(
     entries: &[T],
     check: impl Fn(&T) -> Result<(), Fault>,
 ) -> Result<(), SceneError> {
-    entries.iter().enumerate().try_for_each(|(i, entry)| locate(format!("{kind}[{i}]"), check(entry)))
+    entries
+        .iter()
+        .enumerate()
+        .try_for_each(|(i, entry)| locate(format!("{kind}[{i}]"), check(entry)))
 }
 
 fn locate(entry: impl Into<String>, result: Result<(), Fault>) -> Result<(), SceneError> {

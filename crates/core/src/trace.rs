@@ -37,8 +37,8 @@ pub(crate) struct World<S, F> {
 /// What a ray brings back.
 pub(crate) struct Traced<L: Lane> {
     pub(crate) color: Vector<L>,
-    /// The same number for rays that hit the same primitives in the same order, each seen by the same lights; 0 if
-    /// nobody asks.
+    /// The same number for rays that hit the same primitives in the same order, each seen by the
+    /// same lights; 0 if nobody asks.
     pub(crate) trail: L::Index,
 }
 
@@ -88,7 +88,8 @@ impl<S: Scalar, F: Family> World<S, F> {
         }
     }
 
-    /// The colour at the end of a ray of unit direction, in the lanes of `active`; whether it starts at the eye.
+    /// The colour at the end of a ray of unit direction, in the lanes of `active`; whether it
+    /// starts at the eye.
     ///
     /// Instead of `(1 - k) surface + k mirrored` from the last bounce back to the first, each
     /// surface is added with the share that the mirrors before it left.
@@ -137,23 +138,35 @@ impl<S: Scalar, F: Family> World<S, F> {
 
     /// What rays from the eye may meet next if all of `active` hit the same plane.
     #[inline(always)]
-    fn mirrored_eye<L: Lane<Scalar = S>>(&self, hit: &Hit<L>, active: L::Mask) -> Option<&Bundle<S>> {
+    fn mirrored_eye<L: Lane<Scalar = S>>(
+        &self,
+        hit: &Hit<L>,
+        active: L::Mask,
+    ) -> Option<&Bundle<S>> {
         let number = L::first_index(active, hit.primitive)?;
         let others = active & !L::index_equals(hit.primitive, number);
         self.mirrored_eyes.get(number as usize).filter(|_| !others.any())?.as_ref()
     }
 
-    /// What is hit by rays of `active`, at least one: each distinct primitive is looked up once, for all lanes that hit it.
+    /// What is hit by rays of `active`, at least one: each distinct primitive is looked up once,
+    /// for all lanes that hit it.
     #[inline(always)]
-    fn surface<L: Lane<Scalar = S>>(&self, hit: &Hit<L>, ray: &Ray<L>, active: L::Mask) -> Surface<L> {
+    fn surface<L: Lane<Scalar = S>>(
+        &self,
+        hit: &Hit<L>,
+        ray: &Ray<L>,
+        active: L::Mask,
+    ) -> Surface<L> {
         let mut surface: Option<Surface<L>> = None;
         let mut todo = active;
         loop {
             let number = L::first_index(todo, hit.primitive).unwrap_or(0);
             let here = L::index_equals(hit.primitive, number);
             let at = self.primitives.surface::<L, F>(number, ray, hit.t);
-            let found =
-                Surface { at, finish: Finish::splat(&self.materials[self.primitives.material(number)]) };
+            let found = Surface {
+                at,
+                finish: Finish::splat(&self.materials[self.primitives.material(number)]),
+            };
             let all = match surface {
                 Some(others) => Surface::select(here, found, others),
                 None => found,
@@ -197,7 +210,8 @@ impl<S: Scalar, F: Family> World<S, F> {
             let reach = start_reach + L::splat(light.reach);
             let path = LightPath { start, toward, to_light, distance, inverse_distance, reach };
             let (shadow_ray, limit) = F::shadow_ray(&path);
-            let lit = above & !self.primitives.blocked::<L, F>(&shadow_ray, limit, above, &path, light);
+            let lit =
+                above & !self.primitives.blocked::<L, F>(&shadow_ray, limit, above, &path, light);
             if !lit.any() {
                 continue;
             }
@@ -211,7 +225,8 @@ impl<S: Scalar, F: Family> World<S, F> {
             let highlight = power(mirror_cosine.max(zero), finish.shininess, shining);
             let answer = finish.color * (finish.diffuse * cosine)
                 + Vector::new(highlight, highlight, highlight) * finish.specular;
-            color = Vector::select(lit, color + Vector::splat(light.intensity).scale(answer), color);
+            color =
+                Vector::select(lit, color + Vector::splat(light.intensity).scale(answer), color);
         }
         color
     }

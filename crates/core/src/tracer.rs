@@ -16,8 +16,8 @@ use std::fmt;
 use std::marker::PhantomData;
 use std::ops::Range;
 
-/// The work of rendering `scene` into a picture of `width` x `height` pixels, up to the 65,535 of a scene file each: places in
-/// larger ones are not exact.
+/// The work of rendering `scene` into a picture of `width` x `height` pixels, up to the 65,535 of a
+/// scene file each: places in larger ones are not exact.
 ///
 /// # Errors
 ///
@@ -41,7 +41,8 @@ struct Picture<'a> {
 }
 
 impl Picture<'_> {
-    /// Not generic, so that all that is compiled for it is compiled in this crate, and in none that uses it.
+    /// Not generic, so that all that is compiled for it is compiled in this crate, and in none that
+    /// uses it.
     fn tracer(self) -> Box<dyn Work + Send> {
         self.execution.arithmetic.select(self)
     }
@@ -87,7 +88,8 @@ impl<L: Lane, F: Family> Tracer<L, F> {
         }
     }
 
-    /// The colour at each place, counted from `(right, down)`, in packets of neighbours in the list.
+    /// The colour at each place, counted from `(right, down)`, in packets of neighbours in the
+    /// list.
     fn trace(
         &self,
         places: &Places<L::Scalar>,
@@ -102,9 +104,10 @@ impl<L: Lane, F: Family> Tracer<L, F> {
         }
     }
 
-    /// The centre of pixel `x` along an axis of `extent` pixels, in half steps of the filter's from the
-    /// middle of the picture: a whole number below 2^23. So places on the lattice are exact in `f32`; others
-    /// are rounded there, to 1/512 of a pixel in the widest picture and 1/65536 in one of 500.
+    /// The centre of pixel `x` along an axis of `extent` pixels, in half steps of the filter's from
+    /// the middle of the picture: a whole number below 2^23. So places on the lattice are exact in
+    /// `f32`; others are rounded there, to 1/512 of a pixel in the widest picture and 1/65536 in
+    /// one of 500.
     fn centre(&self, x: u32, extent: u32) -> L::Scalar {
         let half_pixels = 2 * i64::from(x) + 1 - i64::from(extent);
         Scalar::from_f64((i64::from(self.filter.density()) * half_pixels) as f64)
@@ -119,15 +122,18 @@ impl<L: Lane, F: Family> Tracer<L, F> {
     /// Every pixel with samples of its own.
     fn render_alone(&self, tile: &mut Tile<'_>) {
         let area = tile.area();
-        let rights: Vec<L::Scalar> = (0..area.width).map(|x| self.centre(area.x + x, self.width)).collect();
-        let downs: Vec<L::Scalar> = (0..area.height).map(|y| self.centre(area.y + y, self.height)).collect();
+        let rights: Vec<L::Scalar> =
+            (0..area.width).map(|x| self.centre(area.x + x, self.width)).collect();
+        let downs: Vec<L::Scalar> =
+            (0..area.height).map(|y| self.centre(area.y + y, self.height)).collect();
         let samples = self.filter.places();
         // The widest block of which a row's samples fit into a batch; a pixel if not even these do.
         let side = (BATCH / samples.len()).clamp(1, BLOCK);
         let runs_a_batch = (BATCH / (side * samples.len())).max(1);
         let (mut runs, mut places, mut colors) = (Vec::new(), Places::default(), Colors::default());
         for top in (0..downs.len()).step_by(side) {
-            // Of a narrow tile the strips, and so the packets, are not full: to put several together costs all others more.
+            // Of a narrow tile the strips, and so the packets, are not full: to put several
+            // together costs all others more.
             runs.clear();
             let strip = top..downs.len().min(top + side);
             for_each_run(rights.len(), strip, side, |columns, row| runs.push((columns, row)));
@@ -208,10 +214,15 @@ const BATCH: usize = 1024;
 /// The largest side of a block of neighbours: that of a packet of 16.
 const BLOCK: usize = 4;
 
-/// Calls `show` with the columns and the row of each row of each block of a strip: block by block, `side` columns wide, so that
-/// those that follow each other are neighbours.
+/// Calls `show` with the columns and the row of each row of each block of a strip: block by block,
+/// `side` columns wide, so that those that follow each other are neighbours.
 #[inline(always)]
-fn for_each_run(width: usize, strip: Range<usize>, side: usize, mut show: impl FnMut(Range<usize>, usize)) {
+fn for_each_run(
+    width: usize,
+    strip: Range<usize>,
+    side: usize,
+    mut show: impl FnMut(Range<usize>, usize),
+) {
     for left in (0..width).step_by(side) {
         for row in strip.clone() {
             show(left..width.min(left + side), row);

@@ -1,10 +1,11 @@
 //! A tree of boxes around the bounded primitives: a ray meets few of many.
 //!
-//! Whether a box is entered never changes what is found. A hit may lie a few roundings of the coordinates off the
-//! primitive (see the error bounds beside the shapes), and where a ray grazes a triangle its `t` is noise anywhere
-//! along it. So a box is skipped for two reasons only: the ray's whole line misses the box made larger by more than
-//! those roundings, or, along the axis in which the ray is longest, the box lies behind the ray or beyond what was
-//! found before; in this axis the `t` of every primitive is within its box.
+//! Whether a box is entered never changes what is found. A hit may lie a few roundings of the
+//! coordinates off the primitive (see the error bounds beside the shapes), and where a ray grazes a
+//! triangle its `t` is noise anywhere along it. So a box is skipped for two reasons only: the ray's
+//! whole line misses the box made larger by more than those roundings, or, along the axis in which
+//! the ray is longest, the box lies behind the ray or beyond what was found before; in this axis
+//! the `t` of every primitive is within its box.
 
 use crate::kind::Leaf;
 use crate::lane::{Lane, Mask, Scalar};
@@ -15,7 +16,8 @@ use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::{Bvh2, builder::build_bvh2};
 
-/// The box around a primitive: the lower x, y and z, the upper ones, and two numbers that make it eight.
+/// The box around a primitive: the lower x, y and z, the upper ones, and two numbers that make it
+/// eight.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bounds<S>([S; 8]);
 
@@ -51,17 +53,19 @@ const MAX_DEPTH: usize = 128;
 /// Coordinates up to here: the builder multiplies three of them, in `f32`.
 const LARGEST: f64 = 1e12;
 
-/// Up to so many primitives the builder first tries all nodes for a better place in the tree; of more a smaller share, down
-/// to its own. It takes 2 to 5 us a primitive. A fractal of 937 spheres then takes 0.91 [0.84, 0.97] of the time, a cloud of
-/// 1,000 about as much, a mesh of 2,000 triangles no less.
+/// Up to so many primitives the builder first tries all nodes for a better place in the tree; of
+/// more a smaller share, down to its own. It takes 2 to 5 us a primitive. A fractal of 937 spheres
+/// then takes 0.91 [0.84, 0.97] of the time, a cloud of 1,000 about as much, a mesh of 2,000
+/// triangles no less.
 const ALL_TRIED: f32 = 4096.0;
 
-/// How a tree over so many primitives is built. A packet tries a primitive in about the time of two boxes, so leaves are
-/// small.
+/// How a tree over so many primitives is built. A packet tries a primitive in about the time of two
+/// boxes, so leaves are small.
 fn build_parameters(primitives: usize) -> BvhBuildParams {
     let medium = BvhBuildParams::medium_build();
     BvhBuildParams {
-        reinsertion_batch_ratio: (ALL_TRIED / primitives as f32).clamp(medium.reinsertion_batch_ratio, 1.0),
+        reinsertion_batch_ratio: (ALL_TRIED / primitives as f32)
+            .clamp(medium.reinsertion_batch_ratio, 1.0),
         max_prims_per_leaf: 4,
         collapse_traversal_cost: 2.0,
         ..medium
@@ -94,8 +98,8 @@ impl<S: Scalar> Bounds<S> {
 }
 
 impl<S: Scalar> Tree<S> {
-    /// Over primitives in these boxes; `leaf` takes the numbers of those that are tried together. None if there is no
-    /// primitive, or the tree would be too deep.
+    /// Over primitives in these boxes; `leaf` takes the numbers of those that are tried together.
+    /// None if there is no primitive, or the tree would be too deep.
     pub(crate) fn new(bounds: &[Bounds<S>], mut leaf: impl FnMut(&[u32]) -> Leaf) -> Option<Self> {
         let whole = bounds.iter().copied().reduce(Bounds::join)?;
         if !whole.reach().lt(S::literal(LARGEST)) {
@@ -106,15 +110,19 @@ impl<S: Scalar> Tree<S> {
         if depth(&bvh) > MAX_DEPTH {
             return None;
         }
-        let mut tree =
-            Self { nodes: Vec::with_capacity(bvh.nodes.len()), leaves: Vec::new(), reach: whole.reach() };
+        let mut tree = Self {
+            nodes: Vec::with_capacity(bvh.nodes.len()),
+            leaves: Vec::new(),
+            reach: whole.reach(),
+        };
         tree.nodes.push(Node { bounds: whole, first: 0, content: Content::Leaf });
         // Each pair of children lies next to each other, its parent before it.
         let mut pending = vec![(0, 0)];
         while let Some((source, target)) = pending.pop() {
             let node = &bvh.nodes[source];
             let (first, content) = if node.is_leaf() {
-                let members = node.first_index as usize..(node.first_index + node.prim_count) as usize;
+                let members =
+                    node.first_index as usize..(node.first_index + node.prim_count) as usize;
                 let members = &bvh.primitive_indices[members];
                 let boxes = members.iter().map(|&member| bounds[member as usize]);
                 if let Some(joined) = boxes.reduce(Bounds::join) {
@@ -151,8 +159,9 @@ impl<S: Scalar> Tree<S> {
         self.leaves.len()
     }
 
-    /// Shows `found` every leaf that a ray of `wanted`, all with this heading, may hit before `limit`, with the rays
-    /// that may, from near to far. `found` returns the rays that still want to know, and their limits.
+    /// Shows `found` every leaf that a ray of `wanted`, all with this heading, may hit before
+    /// `limit`, with the rays that may, from near to far. `found` returns the rays that still want
+    /// to know, and their limits.
     #[inline(always)]
     pub(crate) fn visit<L: Lane<Scalar = S>>(
         &self,
@@ -216,12 +225,14 @@ impl<S: Scalar> Tree<S> {
     }
 }
 
-/// What all boxes ask of rays with one heading. Axes are in the heading's order: the one along which the rays are
-/// longest is last.
+/// What all boxes ask of rays with one heading. Axes are in the heading's order: the one along
+/// which the rays are longest is last.
 struct Slabs<L> {
-    /// For each axis, the place in a box of the side that the rays pass first, and of the other one.
+    /// For each axis, the place in a box of the side that the rays pass first, and of the other
+    /// one.
     sides: [[usize; 2]; 3],
-    /// The origin as seen from each of these sides, moved away by the margin: instead of every box, once.
+    /// The origin as seen from each of these sides, moved away by the margin: instead of every box,
+    /// once.
     origin: [[L; 2]; 3],
     inverse: [L; 3],
 }
@@ -232,8 +243,10 @@ impl<L: Lane> Slabs<L> {
         let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
         let farthest = origin[0].abs().max(origin[1].abs()).max(origin[2].abs());
         let margin = (farthest + L::splat(reach)) * L::literal(MARGIN * L::Scalar::ROUNDOFF);
-        // A direction across the axis is turned, by less than the margin tells: no infinity meets a zero.
-        let least = direction[heading.order[2]].abs() * L::literal(L::Scalar::ROUNDOFF * L::Scalar::ROUNDOFF);
+        // A direction across the axis is turned, by less than the margin tells: no infinity meets a
+        // zero.
+        let least = direction[heading.order[2]].abs()
+            * L::literal(L::Scalar::ROUNDOFF * L::Scalar::ROUNDOFF);
         Self {
             sides: heading.order.map(|axis| {
                 let (low, high) = (axis, 3 + axis);
@@ -266,7 +279,8 @@ impl<L: Lane> Slabs<L> {
     }
 }
 
-/// The box in the builder's numbers. It only guides the tree's shape, so a rounding does not matter.
+/// The box in the builder's numbers. It only guides the tree's shape, so a rounding does not
+/// matter.
 fn rounded<S: Scalar>(bounds: &Bounds<S>) -> Aabb {
     let corner = |v: Vector<S>| v.widened().as_vec3a();
     Aabb::new(corner(bounds.low()), corner(bounds.high()))

@@ -39,8 +39,9 @@ impl<L: Lane> Vector<L> {
         self.x * other.x + self.y * other.y + self.z * other.z
     }
 
-    /// The dot product as if computed in twice the digits and then rounded: Dot2 of Ogita, Rump and Oishi
-    /// (Accurate Sum and Dot Product, 2005). Barring underflow; where its intermediate numbers overflow, the plain one.
+    /// The dot product as if computed in twice the digits and then rounded: Dot2 of Ogita, Rump and
+    /// Oishi (Accurate Sum and Dot Product, 2005). Barring underflow; where its intermediate
+    /// numbers overflow, the plain one.
     #[inline(always)]
     pub(crate) fn accurate_dot(self, other: Self) -> L {
         let product = |a: L, b: L| (a * b, product_error(a, b, a * b));
@@ -94,7 +95,11 @@ impl<L: Lane> Vector<L> {
 
     #[inline(always)]
     pub(crate) fn select(mask: L::Mask, yes: Self, no: Self) -> Self {
-        Self::new(L::select(mask, yes.x, no.x), L::select(mask, yes.y, no.y), L::select(mask, yes.z, no.z))
+        Self::new(
+            L::select(mask, yes.x, no.x),
+            L::select(mask, yes.y, no.y),
+            L::select(mask, yes.z, no.z),
+        )
     }
 }
 
@@ -145,19 +150,22 @@ impl<L: Lane> Neg for Vector<L> {
 mod tests {
     use super::*;
 
-    /// Catches an error term that is dropped, doubled or of the wrong sign: of sums that cancel, all
-    /// digits are right.
+    /// Catches an error term that is dropped, doubled or of the wrong sign: of sums that cancel,
+    /// all digits are right.
     #[test]
     fn accurate_dot_keeps_the_digits_of_sums_that_cancel() {
         let u = 2f64.powi(-24);
         let mut cancelled = 0;
         for i in 1..400_i16 {
             let k = f32::from(i);
-            let (a, b) =
-                (Vector::new(1.0 + k / 7.0, -k / 3.0, 1.7), Vector::new(k / 11.0, 2.0 + k / 13.0, 0.9));
+            let (a, b) = (
+                Vector::new(1.0 + k / 7.0, -k / 3.0, 1.7),
+                Vector::new(k / 11.0, 2.0 + k / 13.0, 0.9),
+            );
             // The last term takes away what the first two give, but for a rounding.
             let a = Vector { z: -(a.x * b.x + a.y * b.y) / b.z, ..a };
-            for (a, b) in [(a, b), (b, a), (Vector::new(a.z, a.x, a.y), Vector::new(b.z, b.x, b.y))] {
+            for (a, b) in [(a, b), (b, a), (Vector::new(a.z, a.x, a.y), Vector::new(b.z, b.x, b.y))]
+            {
                 let (wide_a, wide_b) = (a.widened(), b.widened());
                 let (exact, terms) = (wide_a.dot(wide_b), wide_a.abs().dot(wide_b.abs()));
                 let error = (f64::from(a.accurate_dot(b)) - exact).abs();

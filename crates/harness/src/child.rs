@@ -1,6 +1,8 @@
-//! Samples of a comparison, each from a process of its own: this program, started again with `sample`.
+//! Samples of a comparison, each from a process of its own: this program, started again with
+//! `sample`.
 //!
-//! So no pool that still waits, no spinning team and no warmed allocator of one strategy meets another.
+//! So no pool that still waits, no spinning team and no warmed allocator of one strategy meets
+//! another.
 
 use crate::interrupt::Interrupt;
 use crate::options::{SceneOptions, SharingOption};
@@ -86,7 +88,8 @@ pub struct Children {
 }
 
 impl Children {
-    /// Will render the scene at `path`, or the report's, by tiles of `tile` pixels a side, samples shared or not.
+    /// Will render the scene at `path`, or the report's, by tiles of `tile` pixels a side, samples
+    /// shared or not.
     pub fn new(
         path: Option<&Path>,
         options: &SceneOptions,
@@ -94,21 +97,38 @@ impl Children {
         tile: NonZeroU32,
         interrupt: &Interrupt,
     ) -> Result<Self, String> {
-        let program = env::current_exe().map_err(|e| format!("cannot find this program's own file: {e}"))?;
+        let program =
+            env::current_exe().map_err(|e| format!("cannot find this program's own file: {e}"))?;
         let share_samples = if share_samples { SharingOption::On } else { SharingOption::Off };
         let words = SceneOptions { share_samples, ..*options }.words();
-        let mut arguments: Vec<OsString> = vec!["sample".into(), "--tile".into(), tile.to_string().into()];
+        let mut arguments: Vec<OsString> =
+            vec!["sample".into(), "--tile".into(), tile.to_string().into()];
         arguments.extend(words.into_iter().map(OsString::from));
         // Last, and where even a name that begins with `-` is a path.
         arguments.extend(path.into_iter().flat_map(|path| [OsString::from("--"), path.into()]));
-        Ok(Self { program, arguments, begin: Instant::now(), slowest: None, interrupt: interrupt.clone() })
+        Ok(Self {
+            program,
+            arguments,
+            begin: Instant::now(),
+            slowest: None,
+            interrupt: interrupt.clone(),
+        })
     }
 
-    fn ask(&mut self, entry: &Entry<'_>, count_rays: bool) -> Result<(Rendering, Option<Rays>), String> {
+    fn ask(
+        &mut self,
+        entry: &Entry<'_>,
+        count_rays: bool,
+    ) -> Result<(Rendering, Option<Rays>), String> {
         let begin = Instant::now();
         let mut command = Command::new(&self.program);
         command.args(&self.arguments[..1]);
-        command.args(["--strategy", entry.strategy.name(), "--threads", &entry.threads.to_string()]);
+        command.args([
+            "--strategy",
+            entry.strategy.name(),
+            "--threads",
+            &entry.threads.to_string(),
+        ]);
         command.args(count_rays.then_some("--count-rays")).args(&self.arguments[1..]);
         let patience = self.slowest.map(|slowest| (slowest * PATIENCE).max(LEAST_PATIENCE));
         let text = output(&mut command, patience)?;
@@ -148,7 +168,8 @@ struct Running(Child);
 
 impl Drop for Running {
     fn drop(&mut self) {
-        // It may have ended by itself: then there is nothing to kill, and nothing to be done about an error.
+        // It may have ended by itself: then there is nothing to kill, and nothing to be done about
+        // an error.
         let _ = self.0.kill();
         let _ = self.0.wait();
     }

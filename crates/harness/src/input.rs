@@ -11,19 +11,23 @@ use std::path::Path;
 /// The scene at `path`, or the report's, and what results call it.
 pub fn load(path: Option<&Path>) -> Result<(String, SceneFile), String> {
     Ok(match path {
-        Some(path) => (path.display().to_string(), scene_file::load(path).map_err(|e| e.to_string())?),
+        Some(path) => {
+            (path.display().to_string(), scene_file::load(path).map_err(|e| e.to_string())?)
+        }
         None => ("report (built in)".to_owned(), scene_file::report_scene()),
     })
 }
 
 /// The most pixels of a picture where each may be a piece of which a record is kept.
 ///
-/// `explain` keeps 32 bytes of each piece of a strategy's quickest rendering. Three of all strategies deal in pixels: 96
-/// bytes a pixel; tiles are few. While one more rendering is recorded there is room for half as many pieces again, 48
-/// bytes a pixel; then its gaps are sorted, 8 bytes; and the picture has 12. Together 164 bytes, of 2^23 pixels 1.4 GB.
+/// `explain` keeps 32 bytes of each piece of a strategy's quickest rendering. Three of all
+/// strategies deal in pixels: 96 bytes a pixel; tiles are few. While one more rendering is recorded
+/// there is room for half as many pieces again, 48 bytes a pixel; then its gaps are sorted, 8
+/// bytes; and the picture has 12. Together 164 bytes, of 2^23 pixels 1.4 GB.
 ///
-/// `predict` keeps 8 bytes of 16 pixels for each rendering, of which there are 41 at most where pictures are so large, and
-/// twice the 8 bytes a pixel that come of it: 37 bytes a pixel, 0.3 GB. The picture is there once for each core, 0.1 GB.
+/// `predict` keeps 8 bytes of 16 pixels for each rendering, of which there are 41 at most where
+/// pictures are so large, and twice the 8 bytes a pixel that come of it: 37 bytes a pixel, 0.3 GB.
+/// The picture is there once for each core, 0.1 GB.
 const MAX_PIXELS: u64 = 1 << 23;
 
 /// A scene with the command line's overrides.
@@ -63,7 +67,8 @@ impl Input {
         let adaptive = options.adaptive == SwitchOption::On;
         if adaptive && scene.render.sampling != Sampling::Lattice {
             return Err(
-                "--adaptive on: it interpolates the samples of a lattice: take --sampling lattice".to_owned()
+                "--adaptive on: it interpolates the samples of a lattice: take --sampling lattice"
+                    .to_owned(),
             );
         }
         scene.render.adaptive = adaptive && scene.render.has_lattice();
@@ -110,8 +115,9 @@ impl Input {
         let Self { name, width, height, .. } = self;
         let RenderSettings { antialiasing, sampling, adaptive, .. } = self.scene.render;
         let adaptive = if adaptive { " (adaptive)" } else { "" };
-        let picture =
-            format!("{name}, {width} x {height} pixels, antialiasing {antialiasing} by {sampling}{adaptive}");
+        let picture = format!(
+            "{name}, {width} x {height} pixels, antialiasing {antialiasing} by {sampling}{adaptive}"
+        );
         [Some(picture), Some(self.arithmetic_line()), self.skipped_line()]
             .into_iter()
             .flatten()

@@ -15,7 +15,9 @@ mod progress;
 mod watched;
 
 use clap::{Parser, Subcommand};
-use commands::{check, compare, error, explain, intersect, overhead, predict, render, sample, strategies};
+use commands::{
+    check, compare, error, explain, intersect, overhead, predict, render, sample, strategies,
+};
 use std::io::{self, Write};
 use std::process::ExitCode;
 
@@ -70,7 +72,9 @@ fn main() -> ExitCode {
         Some(Command::Strategies) => strategies::run(),
         Some(Command::Render(arguments)) => render::run(&arguments),
         Some(Command::Check(arguments)) => check::run(&arguments),
-        Some(Command::Compare(arguments)) => compare::run(arguments.scene.as_deref(), &arguments.options),
+        Some(Command::Compare(arguments)) => {
+            compare::run(arguments.scene.as_deref(), &arguments.options)
+        }
         Some(Command::Overhead(arguments)) => overhead::run(&arguments),
         Some(Command::Predict(arguments)) => predict::run(&arguments),
         Some(Command::Sample(arguments)) => sample::run(&arguments),

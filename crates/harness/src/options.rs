@@ -44,7 +44,8 @@ pub struct SceneOptions {
     /// Whether lattice points that neighbouring pixels of a tile need are traced once
     #[arg(long, value_enum, default_value_t)]
     pub share_samples: SharingOption,
-    /// Whether lattice points are interpolated where the pixels around them look alike: faster, another picture
+    /// Whether lattice points are interpolated where the pixels around them look alike: faster,
+    /// another picture
     #[arg(long, value_enum, default_value_t)]
     pub adaptive: SwitchOption,
     /// Which primitives a ray tries
@@ -201,10 +202,10 @@ impl SharingOption {
         match self {
             Self::On => Ok(true),
             Self::Off => Ok(false),
-            Self::Both => {
-                Err("--share-samples both: only `compare` sets both beside each other, use on or off"
-                    .to_owned())
-            }
+            Self::Both => Err(
+                "--share-samples both: only `compare` sets both beside each other, use on or off"
+                    .to_owned(),
+            ),
         }
     }
 }
@@ -242,13 +243,19 @@ pub fn strategy_parser() -> impl TypedValueParser<Value = &'static dyn Strategy>
     PossibleValuesParser::new(names).try_map(|name| {
         let strategy =
             rayweave_registry::find(&name).ok_or_else(|| "there is no such strategy".to_owned())?;
-        strategy.unavailable().map_or(Ok(strategy), |reason| Err(format!("unavailable here: {reason}")))
+        strategy
+            .unavailable()
+            .map_or(Ok(strategy), |reason| Err(format!("unavailable here: {reason}")))
     })
 }
 
 /// Those that were asked for, each once; without any, all that are available here.
 pub fn chosen(asked_for: &[&'static dyn Strategy]) -> Vec<&'static dyn Strategy> {
-    if asked_for.is_empty() { rayweave_registry::available() } else { distinct(asked_for, |s| s.name()) }
+    if asked_for.is_empty() {
+        rayweave_registry::available()
+    } else {
+        distinct(asked_for, |s| s.name())
+    }
 }
 
 /// The line that says which strategies are left out where all are meant; empty if none is.
@@ -258,7 +265,10 @@ pub fn left_out_line(asked_for: &[&'static dyn Strategy]) -> String {
     if names.is_empty() || !asked_for.is_empty() {
         return String::new();
     }
-    format!("left out, since unavailable here: {} (`rayweave strategies` says why)\n", names.join(", "))
+    format!(
+        "left out, since unavailable here: {} (`rayweave strategies` says why)\n",
+        names.join(", ")
+    )
 }
 
 /// The side of a tile, for clap.
@@ -269,19 +279,26 @@ fn parse_tile(text: &str) -> Result<NonZeroU32, String> {
 /// A number of threads, for clap.
 pub fn parse_threads(text: &str) -> Result<NonZeroUsize, String> {
     let threads = text.parse().ok().filter(|threads| (1..=MAX_THREADS).contains(threads));
-    threads.and_then(NonZeroUsize::new).ok_or_else(|| format!("expected an integer in 1..={MAX_THREADS}"))
+    threads
+        .and_then(NonZeroUsize::new)
+        .ok_or_else(|| format!("expected an integer in 1..={MAX_THREADS}"))
 }
 
-/// A number of threads, or a range of which the ends and the powers of two between them are meant, for clap.
+/// A number of threads, or a range of which the ends and the powers of two between them are meant,
+/// for clap.
 pub fn parse_thread_counts(text: &str) -> Result<Vec<NonZeroUsize>, String> {
     let Some((first, last)) = text.split_once("..") else { return Ok(vec![parse_threads(text)?]) };
     let (first, last) = (parse_threads(first)?, parse_threads(last)?);
     if first > last {
-        return Err(format!("the range is empty: expected its smaller end first, as in {last}..{first}"));
+        return Err(format!(
+            "the range is empty: expected its smaller end first, as in {last}..{first}"
+        ));
     }
     let powers = (0..usize::BITS).filter_map(|power| NonZeroUsize::new(1_usize << power));
     let between = powers.filter(|power| (first..last).contains(power));
-    Ok(distinct(&[first].into_iter().chain(between).chain([last]).collect::<Vec<_>>(), |threads| *threads))
+    Ok(distinct(&[first].into_iter().chain(between).chain([last]).collect::<Vec<_>>(), |threads| {
+        *threads
+    }))
 }
 
 /// Each value once, in the order given.
@@ -302,16 +319,19 @@ pub fn all_threads() -> NonZeroUsize {
 
 /// A size of a picture, for clap.
 pub fn parse_size(text: &str) -> Result<(u32, u32), String> {
-    let side = |text: &str| text.parse().ok().filter(|side| (1..=u32::from(u16::MAX)).contains(side));
-    text.split_once('x')
-        .and_then(|(width, height)| Some((side(width)?, side(height)?)))
-        .ok_or_else(|| "expected WIDTHxHEIGHT, each an integer in 1..=65535, as in 640x480".to_owned())
+    let side =
+        |text: &str| text.parse().ok().filter(|side| (1..=u32::from(u16::MAX)).contains(side));
+    text.split_once('x').and_then(|(width, height)| Some((side(width)?, side(height)?))).ok_or_else(
+        || "expected WIDTHxHEIGHT, each an integer in 1..=65535, as in 640x480".to_owned(),
+    )
 }
 
 /// A time of a second or more, for clap.
 pub fn parse_seconds(text: &str) -> Result<Duration, String> {
     let seconds = text.parse().ok().filter(|seconds| (1..=MAX_SECONDS).contains(seconds));
-    seconds.map(Duration::from_secs).ok_or_else(|| format!("expected whole seconds in 1..={MAX_SECONDS}"))
+    seconds
+        .map(Duration::from_secs)
+        .ok_or_else(|| format!("expected whole seconds in 1..={MAX_SECONDS}"))
 }
 
 /// A share in percent, with or without the sign, for clap.

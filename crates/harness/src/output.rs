@@ -6,8 +6,9 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use tempfile::{Builder, NamedTempFile};
 
-/// A file that will be there once it is whole. Until then an old one of this name stays, and nothing lies beside it,
-/// so that a program that is killed while it computes leaves nothing behind.
+/// A file that will be there once it is whole. Until then an old one of this name stays, and
+/// nothing lies beside it, so that a program that is killed while it computes leaves nothing
+/// behind.
 pub struct PendingFile {
     path: PathBuf,
 }
@@ -48,8 +49,8 @@ impl PendingFile {
     }
 }
 
-/// Whether no two of the files that are named are the same: neither two results, nor a result and what
-/// it is computed from, which would be lost.
+/// Whether no two of the files that are named are the same: neither two results, nor a result and
+/// what it is computed from, which would be lost.
 pub fn distinct_files(paths: &[&Option<PathBuf>]) -> Result<(), String> {
     named_twice(paths.iter().filter_map(|path| path.as_deref())).map_or(Ok(()), |path| {
         Err(format!(

@@ -22,7 +22,8 @@ pub enum Format {
 impl Format {
     /// By the file's extension.
     pub fn of(path: &Path) -> Result<Self, String> {
-        let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
+        let extension =
+            path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
         match extension.as_str() {
             "png" => Ok(Self::Png),
             "ppm" => Ok(Self::Ppm),
@@ -49,7 +50,12 @@ impl Format {
                 // The encoder takes the floats as bytes in the machine's order.
                 let floats: Vec<u8> =
                     picture.pixels().as_flattened().iter().flat_map(|c| c.to_ne_bytes()).collect();
-                OpenExrEncoder::new(&mut file).write_image(&floats, width, height, ExtendedColorType::Rgb32F)
+                OpenExrEncoder::new(&mut file).write_image(
+                    &floats,
+                    width,
+                    height,
+                    ExtendedColorType::Rgb32F,
+                )
             }
         };
         result.map_err(|e| format!("the picture cannot be encoded: {e}"))?;

@@ -10,13 +10,14 @@ use std::fs;
 #[test]
 fn error_writes_every_setting() {
     let folder = folder();
-    let arguments = "error --size 6x4 --target-psnr 30 --json a.json --csv a.csv --svg a.svg --pictures p";
+    let arguments =
+        "error --size 6x4 --target-psnr 30 --json a.json --csv a.csv --svg a.svg --pictures p";
     let table = rayweave(folder.path(), arguments).expect_success();
     let object = json(&folder.path().join("a.json"));
     assert_eq!((&object["schema"], &object["width"]), (&Value::from(1), &Value::from(6)));
     let results = object["results"].as_array().expect("a list");
-    // Four arithmetics, seven densities of the lattice and six of the other sampling, bounces 4, 1, 0; five of
-    // them adaptive too, with all bounces.
+    // Four arithmetics, seven densities of the lattice and six of the other sampling, bounces 4, 1,
+    // 0; five of them adaptive too, with all bounces.
     assert_eq!(results.len(), 4 * (13 * 3 + 5));
     let rounds = object["rounds"].as_u64().expect("a number") as usize;
     assert!(rounds >= 6);
@@ -31,9 +32,14 @@ fn error_writes_every_setting() {
     // The reference; a picture and a difference for each of the front and the report's own.
     let on_front = results.iter().filter(|r| r["pareto"] == true).count();
     let pictures = files_in(&folder.path().join("p"));
-    assert!((1 + 2 * on_front..=3 + 2 * on_front).contains(&pictures.len()), "{on_front}: {pictures:?}");
+    assert!(
+        (1 + 2 * on_front..=3 + 2 * on_front).contains(&pictures.len()),
+        "{on_front}: {pictures:?}"
+    );
     assert!(pictures.contains(&"textbook-f32-25-lattice-rays-4-bounces-difference.png".to_owned()));
-    for text in ["For 30 dB choose ", "whole scene", "cylinders", "Every timed picture was verified."] {
+    for text in
+        ["For 30 dB choose ", "whole scene", "cylinders", "Every timed picture was verified."]
+    {
         assert!(table.contains(text), "{text} in {table}");
     }
 }
@@ -46,10 +52,12 @@ fn error_tries_what_the_scene_has() {
                  screen_width = 1\n[material.a]\ncolor = [1, 1, 1]\n[[sphere]]\ncenter = [0, 0, 0]\n\
                  radius = 1\nmaterial = \"a\"\n";
     fs::write(folder.path().join("ball.toml"), plain).expect("written");
-    let table = rayweave(folder.path(), "error ball.toml --size 5x5 --json a.json").expect_success();
+    let table =
+        rayweave(folder.path(), "error ball.toml --size 5x5 --json a.json").expect_success();
     let object = json(&folder.path().join("a.json"));
     assert_eq!(object["results"].as_array().map(Vec::len), Some(4 * (13 + 5)));
-    let parts: Vec<&Value> = object["costs"].as_array().expect("a list").iter().map(|c| &c["part"]).collect();
+    let parts: Vec<&Value> =
+        object["costs"].as_array().expect("a list").iter().map(|c| &c["part"]).collect();
     assert_eq!(parts, ["whole scene", "spheres"]);
     assert!(!table.contains("planes"), "{table}");
 }
@@ -59,8 +67,10 @@ fn error_tries_what_the_scene_has() {
 fn malformed_cases_are_named_by_their_line() {
     let folder = folder();
     let corpus = repository().join("crates/accuracy/corpus/hard-cases.jsonl");
-    let first = fs::read_to_string(corpus).expect("the corpus").lines().next().expect("a case").to_owned();
-    fs::write(folder.path().join("bad.jsonl"), format!("{first}\n\n{{\"id\": 3}}\n")).expect("written");
+    let first =
+        fs::read_to_string(corpus).expect("the corpus").lines().next().expect("a case").to_owned();
+    fs::write(folder.path().join("bad.jsonl"), format!("{first}\n\n{{\"id\": 3}}\n"))
+        .expect("written");
     let message = rayweave(folder.path(), "intersect bad.jsonl --json out.jsonl").expect_refusal();
     assert!(message.starts_with("error: bad.jsonl: line 3, column "), "{message}");
     let message = rayweave(folder.path(), "intersect none.jsonl").expect_refusal();
@@ -97,7 +107,10 @@ fn intersect_answers_each_case_and_scores_them() {
         assert!(run.stderr.contains(": 0 wrong, 0 leaks, 0 not finite"), "{}", run.stderr);
         assert!(run.stderr.contains("a ray"), "no time: {}", run.stderr);
     }
-    let run = rayweave(folder.path(), &format!("intersect {corpus} --formulas textbook --json out.jsonl"));
+    let run = rayweave(
+        folder.path(),
+        &format!("intersect {corpus} --formulas textbook --json out.jsonl"),
+    );
     assert_eq!((run.status, run.stderr.as_str()), (1, ""));
     assert!(run.stdout.contains("mesh_edge"), "{}", run.stdout);
     let written = fs::read_to_string(folder.path().join("out.jsonl")).expect("the results");
@@ -110,7 +123,8 @@ fn sampling_changes_the_picture() {
     let folder = folder();
     let digest = |options: &str| {
         let room = scene("room.toml");
-        let text = rayweave(folder.path(), &format!("render {room} --size 20x20 -o a.ppm {options}"));
+        let text =
+            rayweave(folder.path(), &format!("render {room} --size 20x20 -o a.ppm {options}"));
         text.expect_success().split("digest ").nth(1).expect("a digest")[..16].to_owned()
     };
     assert_eq!(digest(""), digest("--sampling lattice"));

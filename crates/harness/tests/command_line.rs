@@ -26,7 +26,8 @@ fn render_works_from_any_folder_and_names_the_picture_after_the_scene() {
     let text = rayweave(folder.path(), "render --size 20x10").expect_success();
     assert_eq!(files_in(folder.path()), ["report.png"]);
     assert!(text.contains("20 x 10") && text.contains("written to report.png"), "{text}");
-    rayweave(folder.path(), &format!("render {} --size 20x10", scene("room.toml"))).expect_success();
+    rayweave(folder.path(), &format!("render {} --size 20x10", scene("room.toml")))
+        .expect_success();
     assert_eq!(files_in(folder.path()), ["report.png", "room.png"]);
 }
 
@@ -37,10 +38,12 @@ fn render_gives_the_same_file_with_every_strategy() {
     for strategy in rayweave_registry::available() {
         let name = strategy.name();
         for format in ["ppm", "exr", "png"] {
-            let arguments = format!("render --size 33x21 --strategy {name} --threads 3 -o {name}.{format}");
+            let arguments =
+                format!("render --size 33x21 --strategy {name} --threads 3 -o {name}.{format}");
             rayweave(folder.path(), &arguments).expect_success();
         }
-        let read = |format| fs::read(folder.path().join(format!("{name}.{format}"))).expect("the picture");
+        let read =
+            |format| fs::read(folder.path().join(format!("{name}.{format}"))).expect("the picture");
         assert!(read("ppm").starts_with(b"P6\n33 21 255\n"));
         assert!(read("exr").starts_with(&[0x76, 0x2f, 0x31, 0x01]));
         assert!(read("png").starts_with(b"\x89PNG"));
@@ -89,8 +92,9 @@ fn precision_is_chosen_by_the_scene_or_by_hand() {
 #[test]
 fn check_holds_and_says_so() {
     let folder = folder();
-    let text = rayweave(folder.path(), "check --size 31x17 --threads 1,3 --tile 5 --json check.json")
-        .expect_success();
+    let text =
+        rayweave(folder.path(), "check --size 31x17 --threads 1,3 --tile 5 --json check.json")
+            .expect_success();
     assert!(text.contains("all identical"), "{text}");
     let json: Value = json(&folder.path().join("check.json"));
     assert_eq!(json["holds"], true);
@@ -107,7 +111,10 @@ fn check_holds_and_says_so() {
         (&full["threads"], &awkward["threads"]),
         (&serde_json::json!([1, 3]), &serde_json::json!([1, 3]))
     );
-    assert!(full["strategies"].as_array().expect("a list").contains(&"tile-queue".into()), "{full}");
+    assert!(
+        full["strategies"].as_array().expect("a list").contains(&"tile-queue".into()),
+        "{full}"
+    );
 }
 
 #[test]
@@ -121,10 +128,13 @@ fn triangles_without_area_are_told() {
         let mesh = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\n{faces}");
         fs::write(folder.path().join("mesh.obj"), mesh).expect("written");
         let small = "mesh.toml --size 4x4 --antialiasing 0";
-        let rendered = rayweave(folder.path(), &format!("render {small} -o a.ppm")).expect_success();
-        let compared =
-            rayweave(folder.path(), &format!("compare {small} --strategy sequential --time-limit 1"))
-                .expect_success();
+        let rendered =
+            rayweave(folder.path(), &format!("render {small} -o a.ppm")).expect_success();
+        let compared = rayweave(
+            folder.path(),
+            &format!("compare {small} --strategy sequential --time-limit 1"),
+        )
+        .expect_success();
         (rendered, compared)
     };
     for (faces, told) in [
@@ -193,10 +203,12 @@ fn requests_that_cannot_be_met_are_refused_before_any_work() {
 fn each_malformed_scene_gives_one_message_and_no_picture() {
     let corpus = repository().join("crates/scene-file/tests/malformed");
     let folder = folder();
-    let scenes: Vec<String> = files_in(&corpus).into_iter().filter(|name| name.ends_with(".toml")).collect();
+    let scenes: Vec<String> =
+        files_in(&corpus).into_iter().filter(|name| name.ends_with(".toml")).collect();
     assert!(scenes.len() >= 40, "{} malformed scenes", scenes.len());
     for name in scenes {
-        let expected = fs::read_to_string(corpus.join(&name).with_extension("expected")).expect("beside it");
+        let expected =
+            fs::read_to_string(corpus.join(&name).with_extension("expected")).expect("beside it");
         fs::copy(corpus.join(&name), folder.path().join(&name)).expect("copied");
         let message = rayweave(folder.path(), &format!("render {name} -o a.png")).expect_refusal();
         assert_eq!(message, format!("error: {}\n", expected.trim_end()));
@@ -205,7 +217,8 @@ fn each_malformed_scene_gives_one_message_and_no_picture() {
     assert!(files_in(folder.path()).is_empty());
 }
 
-/// Catches a rendering on fewer threads than were asked for, or that a setting changes their number.
+/// Catches a rendering on fewer threads than were asked for, or that a setting changes their
+/// number.
 #[test]
 fn openmp_has_the_threads_asked_for_or_none() {
     let strategy = rayweave_registry::find("openmp-static").expect("a strategy");
@@ -218,11 +231,13 @@ fn openmp_has_the_threads_asked_for_or_none() {
         program.args(arguments.split(' ')).env(variable, value).current_dir(folder.path());
         Run::of(program.output().expect("the program starts"))
     };
-    let message =
-        run("OMP_THREAD_LIMIT", "2", "render --strategy openmp-static --threads 3").expect_refusal();
-    assert!(message.starts_with("error: openmp-static: cannot start 3 threads: OpenMP gave 2 "), "{message}");
-    let check =
-        "check --size 16x16 --tile 4 --threads 3 --strategy openmp-static,openmp-dynamic,openmp-guided";
+    let message = run("OMP_THREAD_LIMIT", "2", "render --strategy openmp-static --threads 3")
+        .expect_refusal();
+    assert!(
+        message.starts_with("error: openmp-static: cannot start 3 threads: OpenMP gave 2 "),
+        "{message}"
+    );
+    let check = "check --size 16x16 --tile 4 --threads 3 --strategy openmp-static,openmp-dynamic,openmp-guided";
     for (variable, value) in
         [("OMP_NUM_THREADS", "1"), ("OMP_DYNAMIC", "true"), ("OMP_WAIT_POLICY", "active")]
     {
@@ -257,7 +272,10 @@ fn threads_that_cannot_be_started_are_an_error_that_names_the_strategy() {
         // A dozen of them have enough to do not to end before the next is started.
         let size = "--size 200x200 --threads 1000";
         let message = run(&format!("render {size} --strategy {name} -o a.png")).expect_refusal();
-        assert!(message.starts_with(&format!("error: {name}: cannot start 1000 threads")), "{message}");
+        assert!(
+            message.starts_with(&format!("error: {name}: cannot start 1000 threads")),
+            "{message}"
+        );
     }
     // In a check it is a finding, and the check goes on.
     let name = rayweave_registry::recommended().name();
@@ -265,7 +283,8 @@ fn threads_that_cannot_be_started_are_an_error_that_names_the_strategy() {
     assert_eq!(check.status, 1, "{}", check.stderr);
     assert!(check.stdout.contains("cannot start 1000 threads"), "{}", check.stdout);
     // In a comparison it ends its row, and the rest is measured.
-    let compare = run(&format!("compare --size 32x32 --threads 1000,1 --strategy {name} --time-limit 1"));
+    let compare =
+        run(&format!("compare --size 32x32 --threads 1000,1 --strategy {name} --time-limit 1"));
     assert_eq!(compare.status, 1, "{}", compare.stderr);
     let complaint =
         format!("{name}, 1000 threads: failed after 0 samples: {name}: cannot start 1000 threads");

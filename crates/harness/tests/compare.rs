@@ -14,18 +14,28 @@ fn a_sample_renders_as_the_comparison_says() {
                    --lanes 1 --share-samples off --adaptive off --search exhaustive";
     let rendered = rayweave(folder.path(), &format!("render {options} -o a.ppm")).expect_success();
     let digest = rendered.split("digest ").nth(1).expect("a digest")[..16].to_owned();
-    let compare = format!("compare {options} --strategy tile-queue --threads 2 --time-limit 1 --json a.json");
+    let compare =
+        format!("compare {options} --strategy tile-queue --threads 2 --time-limit 1 --json a.json");
     rayweave(folder.path(), &compare).expect_success();
     let object = json(&folder.path().join("a.json"));
-    assert!(object["digest"].as_str().expect("a digest").starts_with(&digest), "{digest}: {object}");
+    assert!(
+        object["digest"].as_str().expect("a digest").starts_with(&digest),
+        "{digest}: {object}"
+    );
 
     let sample = format!("sample {options} --strategy tile-queue --threads 2 --tile 4");
     let answer = rayweave(folder.path(), &sample).expect_success();
     let answer: Value = serde_json::from_str(&answer).expect("a line of JSON");
     let rendered = &answer["rendered"];
-    assert_eq!((&rendered["digest"], &rendered["first_digest"]), (&object["digest"], &object["digest"]));
+    assert_eq!(
+        (&rendered["digest"], &rendered["first_digest"]),
+        (&object["digest"], &object["digest"])
+    );
     assert!(rendered["one_shot_ns"].as_u64() > rendered["prepare_ns"].as_u64(), "{answer}");
-    assert!(rendered["render_ns"].as_u64() > Some(0) && rendered["primary_rays"].is_null(), "{answer}");
+    assert!(
+        rendered["render_ns"].as_u64() > Some(0) && rendered["primary_rays"].is_null(),
+        "{answer}"
+    );
     assert_eq!(rendered["cpu_ns"].is_u64(), cfg!(unix));
 
     let counted = rayweave(folder.path(), &format!("{sample} --count-rays")).expect_success();
@@ -37,7 +47,8 @@ fn a_sample_renders_as_the_comparison_says() {
 #[test]
 fn a_sample_that_fails_says_why_and_is_listed_nowhere() {
     let folder = folder();
-    let answer = rayweave(folder.path(), "sample --strategy sequential --threads 1 -- missing.toml");
+    let answer =
+        rayweave(folder.path(), "sample --strategy sequential --threads 1 -- missing.toml");
     let answer: Value = serde_json::from_str(&answer.expect_success()).expect("a line of JSON");
     let reason = answer["failed"].as_str().expect("a reason");
     assert!(reason.starts_with("missing.toml: cannot be read"), "{reason}");
@@ -60,12 +71,16 @@ fn rounds_follow_the_goal_and_the_limit() {
     let folder = folder();
     let run = |options: &str| {
         let small = "compare --size 4x4 --antialiasing 0 --strategy sequential";
-        let text = rayweave(folder.path(), &format!("{small} {options} --json a.json")).expect_success();
+        let text =
+            rayweave(folder.path(), &format!("{small} {options} --json a.json")).expect_success();
         let object = json(&folder.path().join("a.json"));
         (text, object["rounds"].as_u64().expect("a number"), object["precision_goal"].clone())
     };
     let (text, rounds, goal) = run("--precision-goal 100% --time-limit 600");
-    assert!(rounds < 40 && text.contains("goal: each speed-up is known to +-100.000 % or better."), "{text}");
+    assert!(
+        rounds < 40 && text.contains("goal: each speed-up is known to +-100.000 % or better."),
+        "{text}"
+    );
     assert_eq!(goal, Value::from(1.0));
     let (text, rounds, goal) = run("--precision-goal 0.001 --time-limit 1");
     assert!(rounds >= 8 && text.contains("not known to +-0.001 %"), "{text}");
@@ -83,15 +98,17 @@ fn noise_is_told() {
     let noise = &json(&folder.path().join("a.json"))["noise"];
     assert!(noise["wall_s"].as_f64() > Some(0.0) && noise["disturbed"].is_boolean(), "{noise}");
     if cfg!(target_os = "linux") {
-        assert!(noise["foreign_cpu_s"].is_f64() && noise["involuntary_switches"].is_u64(), "{noise}");
+        assert!(
+            noise["foreign_cpu_s"].is_f64() && noise["involuntary_switches"].is_u64(),
+            "{noise}"
+        );
     }
 }
 
 #[test]
 fn compare_writes_what_other_programs_read() {
     let folder = folder();
-    let arguments =
-        "compare --size 24x16 --antialiasing 1 --threads 1,2 --time-limit 1 --json a.json --csv a.csv";
+    let arguments = "compare --size 24x16 --antialiasing 1 --threads 1,2 --time-limit 1 --json a.json --csv a.csv";
     let table = rayweave(folder.path(), arguments).expect_success();
     let object = json(&folder.path().join("a.json"));
     assert_eq!(object["schema"], 1);
@@ -105,7 +122,9 @@ fn compare_writes_what_other_programs_read() {
         assert_eq!(result["identical"], true);
         assert_eq!(&result["digest"], digest);
         let one_shot = &result["one_shot"];
-        for samples in [&result["samples_ns"], &result["prepare_samples_ns"], &one_shot["samples_ns"]] {
+        for samples in
+            [&result["samples_ns"], &result["prepare_samples_ns"], &one_shot["samples_ns"]]
+        {
             let samples = samples.as_array().expect("a list");
             assert!(samples.len() >= 8 && samples.iter().all(Value::is_u64));
         }
@@ -120,7 +139,8 @@ fn compare_writes_what_other_programs_read() {
     assert_eq!(csv.lines().count(), 1 + results.len());
 }
 
-/// What is traced where samples are shared: of `sides` a lattice of density `density` and what lies around it.
+/// What is traced where samples are shared: of `sides` a lattice of density `density` and what lies
+/// around it.
 fn lattice_points(density: u64, sides: &[(u64, u64)]) -> u64 {
     let points = |side: u64| density * (side + 1) + 1;
     sides.iter().map(|&(width, height)| points(width) * points(height)).sum()
@@ -131,7 +151,9 @@ fn rays(object: &Value, strategy: &str) -> (u64, u64) {
     let results = object["results"].as_array().expect("a list").iter();
     let mut found: Vec<(u64, u64)> = results
         .filter(|result| result["strategy"] == strategy)
-        .map(|result| ["primary_rays", "redundant_rays"].map(|key| result[key].as_u64().expect("a number")))
+        .map(|result| {
+            ["primary_rays", "redundant_rays"].map(|key| result[key].as_u64().expect("a number"))
+        })
         .map(<(u64, u64)>::from)
         .collect();
     found.dedup();
@@ -143,8 +165,9 @@ fn rays(object: &Value, strategy: &str) -> (u64, u64) {
 fn compare_counts_the_rays_of_the_tiles_that_each_strategy_cuts() {
     let folder = folder();
     let run = |options: &str| {
-        let arguments =
-            format!("compare --size 24x16 --threads 2 --tile 10 {options} --time-limit 1 --json a.json");
+        let arguments = format!(
+            "compare --size 24x16 --threads 2 --tile 10 {options} --time-limit 1 --json a.json"
+        );
         let table = rayweave(folder.path(), &arguments).expect_success();
         (table, json(&folder.path().join("a.json")))
     };
@@ -159,7 +182,10 @@ fn compare_counts_the_rays_of_the_tiles_that_each_strategy_cuts() {
     let by_pixels = (24 * 16 * 25, 24 * 16 * 25 - needed);
     assert_eq!(rays(&object, "rayon-pixels"), by_pixels);
     assert_eq!(rays(&object, "mutex-image"), by_pixels);
-    assert!(table.contains("  5.6/px +21.3 %  ") && table.contains("  25.0/px +438 %  "), "{table}");
+    assert!(
+        table.contains("  5.6/px +21.3 %  ") && table.contains("  25.0/px +438 %  "),
+        "{table}"
+    );
 
     for (options, a_pixel) in [
         ("--antialiasing 2 --share-samples off", 25),
@@ -193,7 +219,8 @@ fn compare_says_how_the_picture_is_computed() {
         );
         let table = rayweave(folder.path(), &arguments).expect_success();
         let object = json(&folder.path().join("a.json"));
-        let line = table.lines().find(|line| line.starts_with("computed: ")).expect("the line").to_owned();
+        let line =
+            table.lines().find(|line| line.starts_with("computed: ")).expect("the line").to_owned();
         (line, ["lanes", "share_samples", "search"].map(|key| object[key].clone()))
     };
     let (line, keys) = run("--antialiasing 1 --lanes 8 --precision f32");
@@ -216,7 +243,10 @@ fn compare_sets_shared_samples_beside_their_own() {
     let text = rayweave(folder.path(), arguments).expect_success();
     let place = |part: &str| text.find(part).unwrap_or_else(|| panic!("{part}: {text}"));
     let (shared, unshared) = (place("samples shared"), place("samples not shared"));
-    assert!(shared < unshared && unshared < place("sharing: without it sequential takes "), "{text}");
+    assert!(
+        shared < unshared && unshared < place("sharing: without it sequential takes "),
+        "{text}"
+    );
     assert_eq!(text.matches("(control)").count(), 2, "{text}");
 
     let object = json(&folder.path().join("a.json"));
@@ -239,20 +269,26 @@ fn compare_sets_shared_samples_beside_their_own() {
 fn without_a_command_it_compares() {
     let folder = folder();
     let strategy = rayweave_registry::recommended().name();
-    let table =
-        rayweave(folder.path(), &format!("--size 16x16 --threads 2 --strategy {strategy} --time-limit 1"))
-            .expect_success();
+    let table = rayweave(
+        folder.path(),
+        &format!("--size 16x16 --threads 2 --strategy {strategy} --time-limit 1"),
+    )
+    .expect_success();
     assert!(table.contains(strategy) && table.contains("(control)"), "{table}");
 }
 
 #[test]
 fn a_baseline_says_what_has_changed() {
     let folder = folder();
-    let small = "compare --size 4x4 --antialiasing 0 --strategy tile-queue --threads 1 --time-limit 1";
+    let small =
+        "compare --size 4x4 --antialiasing 0 --strategy tile-queue --threads 1 --time-limit 1";
     rayweave(folder.path(), &format!("{small} --json old.json --markdown old.md")).expect_success();
-    let text =
-        rayweave(folder.path(), &format!("{small} --baseline old.json --json new.json")).expect_success();
-    assert!(text.contains("changes since the baseline") && !text.contains("ANOTHER PICTURE"), "{text}");
+    let text = rayweave(folder.path(), &format!("{small} --baseline old.json --json new.json"))
+        .expect_success();
+    assert!(
+        text.contains("changes since the baseline") && !text.contains("ANOTHER PICTURE"),
+        "{text}"
+    );
     let changes = &json(&folder.path().join("new.json"))["changes"];
     assert!(changes[1]["time"]["low"].as_f64() > Some(0.0) && changes[2].is_null(), "{changes}");
     let markdown = fs::read_to_string(folder.path().join("old.md")).expect("the file");
@@ -277,11 +313,16 @@ fn a_baseline_says_what_has_changed() {
 fn scenes_stand_beside_each_other() {
     let folder = folder();
     let small = "compare --size 8x8 --strategy tile-queue --threads 2 --time-limit 1 --json a.json";
-    let text =
-        rayweave(&repository(), "compare --size 8x8 --strategy tile-queue --time-limit 1 --scenes all")
-            .expect_success();
+    let text = rayweave(
+        &repository(),
+        "compare --size 8x8 --strategy tile-queue --time-limit 1 --scenes all",
+    )
+    .expect_success();
     for scene in ["balanced", "columns", "corner", "free", "tile"] {
-        assert!(text.lines().any(|line| line.starts_with(&format!("{scene}: "))), "{scene}: {text}");
+        assert!(
+            text.lines().any(|line| line.starts_with(&format!("{scene}: "))),
+            "{scene}: {text}"
+        );
     }
     let two = format!("{},{}", program::scene("report.toml"), program::scene("loads/free.toml"));
     rayweave(folder.path(), &format!("{small} --scenes {two}")).expect_success();
@@ -302,8 +343,8 @@ fn scenes_stand_beside_each_other() {
     }
 }
 
-/// A comparison that would take a minute, interrupted as a terminal does it: all processes of the group at once, when it has begun
-/// `samples` processes.
+/// A comparison that would take a minute, interrupted as a terminal does it: all processes of the
+/// group at once, when it has begun `samples` processes.
 #[cfg(target_os = "linux")]
 fn interrupted_at(samples: usize, options: &str) -> (program::Run, Option<Value>) {
     use std::collections::BTreeSet;
@@ -345,14 +386,20 @@ fn children_of(parent: u32) -> Vec<u32> {
     numbers.filter(is_child).collect()
 }
 
-/// Catches what was measured thrown away, and the sample that the same Ctrl-C ended told as a strategy's failure.
+/// Catches what was measured thrown away, and the sample that the same Ctrl-C ended told as a
+/// strategy's failure.
 #[cfg(target_os = "linux")]
 #[test]
 fn who_interrupts_it_gets_the_rounds_so_far() {
-    // The reference's picture, three rows that warm up, six rounds of three, and the next has begun.
+    // The reference's picture, three rows that warm up, six rounds of three, and the next has
+    // begun.
     let (run, object) = interrupted_at(1 + 3 + 6 * 3 + 1, "--size 4x4 --antialiasing 0");
     assert_eq!((run.status, run.stderr.as_str()), (130, ""), "{}", run.stdout);
-    assert!(run.stdout.contains("; interrupted after ") && !run.stdout.contains("failed"), "{}", run.stdout);
+    assert!(
+        run.stdout.contains("; interrupted after ") && !run.stdout.contains("failed"),
+        "{}",
+        run.stdout
+    );
     let object = object.expect("what was asked for");
     let rounds = object["rounds"].as_u64().expect("a number") as usize;
     assert!(rounds >= 6 && object["interrupted"] == true, "{object}");

@@ -11,9 +11,10 @@ const DOCUMENTS: [&str; 5] =
 /// Commands about the whole repository: CI runs them (`.ci/run`), a test cannot.
 const RUN_BY_CI: [&str; 4] = ["cargo run --release", "cargo test", "cargo bench", ".ci/run"];
 
-/// Other tests run what these call: the example strategy is built, the examples' libraries are tested, and
-/// fuzzing has no end.
-const RUN_ELSEWHERE: [&str; 4] = ["dealt-rows", "--example hard-cases", "--example leaks", "cargo fuzz"];
+/// Other tests run what these call: the example strategy is built, the examples' libraries are
+/// tested, and fuzzing has no end.
+const RUN_ELSEWHERE: [&str; 4] =
+    ["dealt-rows", "--example hard-cases", "--example leaks", "cargo fuzz"];
 
 /// Cases that the documents' commands read, by the name that they are given there.
 const CASES: (&str, &str) = ("crates/accuracy/corpus/hard-cases.jsonl", "cases.jsonl");
@@ -37,7 +38,8 @@ fn commands(document: &str) -> Vec<String> {
     commands
 }
 
-/// Small pictures and short times do: what is tested is that the command is understood and succeeds.
+/// Small pictures and short times do: what is tested is that the command is understood and
+/// succeeds.
 fn small(arguments: &str) -> String {
     let takes_size = ["render", "check", "compare", "error", "explain", "predict", "-"]
         .iter()
@@ -50,7 +52,10 @@ fn small(arguments: &str) -> String {
     if takes_size && !small.contains("--size") {
         small += " --size 24x18";
     }
-    if ["compare", "explain", "overhead", "predict", "-"].iter().any(|word| arguments.starts_with(word)) {
+    if ["compare", "explain", "overhead", "predict", "-"]
+        .iter()
+        .any(|word| arguments.starts_with(word))
+    {
         small += " --time-limit 1";
     }
     small
@@ -61,10 +66,12 @@ fn the_documents_commands_work() {
     let folder = TempDir::new().expect("a temporary folder");
     for scenes in ["scenes", "scenes/hard", "scenes/loads"] {
         fs::create_dir(folder.path().join(scenes)).expect("a folder");
-        let entries =
-            fs::read_dir(repository().join(scenes)).expect("the scenes").map(|e| e.expect("an entry"));
+        let entries = fs::read_dir(repository().join(scenes))
+            .expect("the scenes")
+            .map(|e| e.expect("an entry"));
         for entry in entries.filter(|entry| entry.path().is_file()) {
-            fs::copy(entry.path(), folder.path().join(scenes).join(entry.file_name())).expect("copied");
+            fs::copy(entry.path(), folder.path().join(scenes).join(entry.file_name()))
+                .expect("copied");
         }
     }
     fs::copy(repository().join(CASES.0), folder.path().join(CASES.1)).expect("copied");
@@ -87,8 +94,10 @@ fn the_documents_commands_work() {
                 .output()
                 .expect("the program starts");
             let said = String::from_utf8_lossy(&output.stderr).into_owned();
-            // The textbook's formulas are wrong in some cases, which is what the command is there to show.
-            let expected = i32::from(arguments.starts_with("intersect") && arguments.contains("textbook"));
+            // The textbook's formulas are wrong in some cases, which is what the command is there
+            // to show.
+            let expected =
+                i32::from(arguments.starts_with("intersect") && arguments.contains("textbook"));
             let status = output.status.code();
             assert!(status == Some(expected) && said.is_empty(), "{document}: `{command}`: {said}");
             run += 1;
@@ -112,7 +121,8 @@ fn the_documents_links_lead_somewhere() {
         let text = fs::read_to_string(repository().join(document)).expect("the document");
         for link in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
             if !link.contains("://") && !link.starts_with('#') {
-                let folder = repository().join(document).parent().expect("a file is in a folder").to_owned();
+                let folder =
+                    repository().join(document).parent().expect("a file is in a folder").to_owned();
                 assert!(folder.join(link).exists(), "{document}: {link}");
             }
         }

@@ -5,13 +5,16 @@ mod program;
 use program::{files_in, folder, json, rayweave};
 use std::fs;
 
-const CAUSES: [&str; 6] = ["redundant", "slowdown", "dispatch", "contention", "imbalance", "serial"];
+const CAUSES: [&str; 6] =
+    ["redundant", "slowdown", "dispatch", "contention", "imbalance", "serial"];
 
-/// Catches a strategy whose account leaves something out: it would not add up, however small the picture.
+/// Catches a strategy whose account leaves something out: it would not add up, however small the
+/// picture.
 #[test]
 fn explain_writes_what_it_measured_of_every_strategy() {
     let folder = folder();
-    let names: Vec<&str> = rayweave_registry::available().iter().map(|strategy| strategy.name()).collect();
+    let names: Vec<&str> =
+        rayweave_registry::available().iter().map(|strategy| strategy.name()).collect();
     let arguments = format!(
         "explain --size 40x30 --threads 2 --tile 8 --time-limit 2 --strategy {} --json a.json --trace a.trace.json --pictures drawn",
         names.join(",")
@@ -26,7 +29,8 @@ fn explain_writes_what_it_measured_of_every_strategy() {
     for (result, name) in results.iter().zip(&names) {
         assert_eq!(result["strategy"], **name);
         let number = |key: &str| result[key].as_f64().unwrap_or_else(|| panic!("{name}: {key}"));
-        let losses: f64 = CAUSES.iter().filter_map(|cause| result["losses_ns"][cause].as_f64()).sum();
+        let losses: f64 =
+            CAUSES.iter().filter_map(|cause| result["losses_ns"][cause].as_f64()).sum();
         let (lost, rest) = (number("lost_ns"), number("unexplained_ns"));
         assert!((losses + rest - lost).abs() <= 1.0, "{name}: {losses} and {rest} of {lost}");
         let threads = result["threads_recorded"].as_array().expect("a list");
@@ -45,7 +49,9 @@ fn explain_writes_what_it_measured_of_every_strategy() {
     assert_eq!(processes, names.len());
     let mut expected: Vec<String> = names
         .iter()
-        .flat_map(|name| ["cost.svg", "threads.png", "timeline.svg"].map(|what| format!("{name}-{what}")))
+        .flat_map(|name| {
+            ["cost.svg", "threads.png", "timeline.svg"].map(|what| format!("{name}-{what}"))
+        })
         .collect();
     expected.sort();
     assert_eq!(files_in(&folder.path().join("drawn")), expected);

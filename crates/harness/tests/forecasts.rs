@@ -19,8 +19,10 @@ fn is_positive(value: &Value) -> bool {
 fn overhead_has_a_row_a_strategy() {
     let folder = folder();
     let strategies = ["sequential", rayweave_registry::recommended().name()];
-    let arguments =
-        format!("overhead --strategy {} --threads 2 --time-limit 1 --json a.json", strategies.join(","));
+    let arguments = format!(
+        "overhead --strategy {} --threads 2 --time-limit 1 --json a.json",
+        strategies.join(",")
+    );
     let table = rayweave(folder.path(), &arguments).expect_success();
     for word in strategies.iter().chain(&["METG(50 %)", "break-even", "ns a piece", "machine: "]) {
         assert!(table.contains(word), "{word}: {table}");
@@ -61,9 +63,13 @@ fn predict_goes_beyond_the_threads_that_are_here() {
     assert!(fs::read_to_string(folder.path().join("a.svg")).expect("the plot").contains(name));
 
     let object = json(&folder.path().join("a.json"));
-    assert_eq!((&object["schema"], &object["width"], &object["tile"]), (&1.into(), &40.into(), &4.into()));
+    assert_eq!(
+        (&object["schema"], &object["width"], &object["tile"]),
+        (&1.into(), &40.into(), &4.into())
+    );
     assert!(object["scene"].as_str().expect("text").ends_with("room.toml"));
-    let threads: Vec<u64> = results(&object).iter().filter_map(|row| row["threads"].as_u64()).collect();
+    let threads: Vec<u64> =
+        results(&object).iter().filter_map(|row| row["threads"].as_u64()).collect();
     assert_eq!(threads, [1, 2, 4, 8, 100]);
     let here = std::thread::available_parallelism().map_or(1, usize::from) as u64;
     for row in results(&object) {
@@ -77,7 +83,10 @@ fn predict_goes_beyond_the_threads_that_are_here() {
     for (law, keys) in
         [(&law["amdahl"], &["serial", "error"][..]), (&law["usl"], &["sigma", "kappa", "error"])]
     {
-        assert!(keys.iter().all(|key| law[key].as_f64().is_some_and(|share| share >= 0.0)), "{law}");
+        assert!(
+            keys.iter().all(|key| law[key].as_f64().is_some_and(|share| share >= 0.0)),
+            "{law}"
+        );
     }
     assert!(is_positive(&law["overheads"]["start_ns"]), "{law}");
     assert!(is_positive(&object["noise"]["wall_s"]), "{}", object["noise"]);
@@ -94,7 +103,8 @@ fn predict_takes_every_strategy_that_starts_threads() {
     )
     .expect_success();
     let object = json(&folder.path().join("a.json"));
-    let parallel = rayweave_registry::STRATEGIES.iter().filter(|s| s.threads_start() != ThreadsStart::Never);
+    let parallel =
+        rayweave_registry::STRATEGIES.iter().filter(|s| s.threads_start() != ThreadsStart::Never);
     let unavailable = object["unavailable"].as_array().expect("a list").len();
     assert_eq!(results(&object).len(), 2 * (parallel.count() - unavailable));
     assert!(results(&object).iter().all(|row| is_positive(&row["predicted"])));
@@ -114,7 +124,10 @@ fn requests_that_cannot_be_met_are_refused() {
         ("predict --svg folder", "it is a folder"),
         ("predict --json a.json --svg a.json", "named twice"),
         ("predict --tile 0", "0"),
-        ("predict --size 4097x2048", "too many to record each: at most 8388608, use a smaller --size"),
+        (
+            "predict --size 4097x2048",
+            "too many to record each: at most 8388608, use a smaller --size",
+        ),
         ("overhead --threads 1025", "1..=1024"),
         ("overhead --strategy nope", "sequential"),
         ("overhead --json missing/a.json", "no folder missing"),

@@ -1,4 +1,5 @@
-//! What a strategy's threads cost it here, as a simulation needs it: from outside, on synthetic work.
+//! What a strategy's threads cost it here, as a simulation needs it: from outside, on synthetic
+//! work.
 
 use crate::overhead::{of_pixels, step};
 use crate::sheet::{Columns, Sheet};
@@ -70,7 +71,11 @@ impl Sheets {
             alone: [Sheet::column(1, long)?, Sheet::column(1, 2 * long)?],
             together: [Sheet::column(threads, long)?, Sheet::column(threads, 2 * long)?],
             spread: Sheet::column(pieces, steps(ns / 2.0))?,
-            late: Sheet::new(Synthetic(move |_, y| if y < pieces / 2 { 0 } else { late }), 1, pieces)?,
+            late: Sheet::new(
+                Synthetic(move |_, y| if y < pieces / 2 { 0 } else { late }),
+                1,
+                pieces,
+            )?,
         })
     }
 
@@ -102,8 +107,9 @@ struct Times {
 impl Times {
     /// Each by itself, before anything is subtracted.
     fn least_disturbed(rounds: &[Self]) -> Self {
-        let of =
-            |of: fn(&Self) -> f64| lower_quartile(&rounds.iter().map(of).collect::<Vec<_>>()).unwrap_or(0.0);
+        let of = |of: fn(&Self) -> f64| {
+            lower_quartile(&rounds.iter().map(of).collect::<Vec<_>>()).unwrap_or(0.0)
+        };
         Self {
             single: of(|times| times.single),
             columns_one: [of(|times| times.columns_one[0]), of(|times| times.columns_one[1])],
@@ -116,8 +122,9 @@ impl Times {
     }
 }
 
-/// From outside nothing tells what of a piece's dispatch one thread at a time does. Where all threads share something,
-/// that much of it is taken for it as did not become faster by more threads, and what became slower is the handover.
+/// From outside nothing tells what of a piece's dispatch one thread at a time does. Where all
+/// threads share something, that much of it is taken for it as did not become faster by more
+/// threads, and what became slower is the handover.
 fn overheads(rule: Rule, threads: usize, times: &Times) -> Overheads {
     // What comes out below 0 is noise.
     let dispatch = |columns| Columns::slope(columns).max(0.0);
@@ -130,16 +137,21 @@ fn overheads(rule: Rule, threads: usize, times: &Times) -> Overheads {
     let overheads = Overheads {
         start: times.single,
         // Whoever begins later ends later.
-        next_start: (without_pieces(times.together) - without_pieces(times.alone)).max(0.0) / others,
+        next_start: (without_pieces(times.together) - without_pieces(times.alone)).max(0.0)
+            / others,
         piece: one,
         steal: if steals { price_of_theft(rule, threads, times.late - times.spread) } else { 0.0 },
         ..Overheads::default()
     };
-    let access =
-        |pieces: f64| Access { hold: one.min(all) * pieces, handover: (all - one).max(0.0) * pieces };
+    let access = |pieces: f64| Access {
+        hold: one.min(all) * pieces,
+        handover: (all - one).max(0.0) * pieces,
+    };
     let piece = (one - all).max(0.0);
     match (rule.delivery, rule.dealing) {
-        (Delivery::Locked | Delivery::Sent, _) => Overheads { deliver: access(1.0), piece, ..overheads },
+        (Delivery::Locked | Delivery::Sent, _) => {
+            Overheads { deliver: access(1.0), piece, ..overheads }
+        }
         (Delivery::InPlace, Dealing::Shared { chunk }) => {
             Overheads { take: access(chunk as f64), piece, ..overheads }
         }
@@ -147,14 +159,15 @@ fn overheads(rule: Rule, threads: usize, times: &Times) -> Overheads {
     }
 }
 
-/// What a rendering takes besides its pieces, from the time of one and of another whose pieces are twice as long: threads
-/// that slow each other down lengthen the pieces, not this.
+/// What a rendering takes besides its pieces, from the time of one and of another whose pieces are
+/// twice as long: threads that slow each other down lengthen the pieces, not this.
 fn without_pieces([single, twice]: [f64; 2]) -> f64 {
     2.0 * single - twice
 }
 
-/// What a theft costs, by how much longer the late load takes than the one that is spread: less what it would take
-/// longer if thefts cost nothing, and by how much each nanosecond of a theft delays the end. Both are simulated.
+/// What a theft costs, by how much longer the late load takes than the one that is spread: less
+/// what it would take longer if thefts cost nothing, and by how much each nanosecond of a theft
+/// delays the end. Both are simulated.
 fn price_of_theft(rule: Rule, threads: usize, longer: f64) -> f64 {
     let late = |steal| simulated_late(rule, threads, steal);
     (longer - late(0.0)).max(0.0) / (late(1.0) - late(0.0)).max(1.0)
@@ -163,7 +176,8 @@ fn price_of_theft(rule: Rule, threads: usize, longer: f64) -> f64 {
 /// How much longer than the load that is spread the late one takes where a theft costs `steal`.
 fn simulated_late(rule: Rule, threads: usize, steal: f64) -> f64 {
     let (pieces, ns) = STOLEN;
-    let late: Vec<f64> = (0..pieces).map(|piece| if piece < pieces / 2 { 0.0 } else { ns }).collect();
+    let late: Vec<f64> =
+        (0..pieces).map(|piece| if piece < pieces / 2 { 0.0 } else { ns }).collect();
     let spread = vec![ns / 2.0; pieces as usize];
     let time = |pieces: &[f64], steal| {
         simulate(rule, threads, pieces, &Overheads { steal, ..Overheads::default() }).time
@@ -199,7 +213,8 @@ mod tests {
     fn what_is_shared_takes_what_threads_do_not_speed_up() {
         let plain = Overheads { start: 7.0, next_start: 3.0, piece: 10.0, ..Overheads::default() };
         assert_eq!(of(Dealing::Equal, Delivery::InPlace, 14.0), plain);
-        let steals = Rule { piece: Piece::Row, dealing: Dealing::Stealing, delivery: Delivery::InPlace };
+        let steals =
+            Rule { piece: Piece::Row, dealing: Dealing::Stealing, delivery: Delivery::InPlace };
         let steal = price_of_theft(steals, 3, 3.0);
         assert_eq!(of(Dealing::Stealing, Delivery::InPlace, 6.0), Overheads { steal, ..plain });
         let take = Access { hold: 20.0, handover: 8.0 };
@@ -207,11 +222,14 @@ mod tests {
         assert_eq!(of(shared, Delivery::InPlace, 14.0), Overheads { piece: 0.0, take, ..plain });
         let deliver = Access { hold: 6.0, handover: 0.0 };
         assert_eq!(of(shared, Delivery::Locked, 6.0), Overheads { piece: 4.0, deliver, ..plain });
-        assert_eq!(of(Dealing::Equal, Delivery::Sent, 6.0), Overheads { piece: 4.0, deliver, ..plain });
+        assert_eq!(
+            of(Dealing::Equal, Delivery::Sent, 6.0),
+            Overheads { piece: 4.0, deliver, ..plain }
+        );
     }
 
-    /// Catches a price of stealing, or of another thread's start, where there is no other thread, and one of pieces where
-    /// there is one a thread.
+    /// Catches a price of stealing, or of another thread's start, where there is no other thread,
+    /// and one of pieces where there is one a thread.
     #[test]
     fn bands_have_no_dispatch_and_one_thread_nobody_to_steal_from() {
         let rule = |piece| Rule { piece, dealing: Dealing::Halving, delivery: Delivery::InPlace };
@@ -221,10 +239,13 @@ mod tests {
         assert_eq!(overheads(rule(Piece::Band), 1, &faster), Overheads { piece: 0.0, ..expected });
     }
 
-    /// Catches pieces that cannot be dealt out evenly taken for the price of a theft, and several thefts for one.
+    /// Catches pieces that cannot be dealt out evenly taken for the price of a theft, and several
+    /// thefts for one.
     #[test]
     fn what_a_theft_costs_is_found_again() {
-        for (dealing, threads) in [(Dealing::Stealing, 2), (Dealing::Stealing, 5), (Dealing::Halving, 2)] {
+        for (dealing, threads) in
+            [(Dealing::Stealing, 2), (Dealing::Stealing, 5), (Dealing::Halving, 2)]
+        {
             let rule = Rule { piece: Piece::Tile, dealing, delivery: Delivery::InPlace };
             let found = price_of_theft(rule, threads, simulated_late(rule, threads, 100.0));
             assert!((found - 100.0).abs() < 1.0, "{dealing:?}, {threads} threads: {found}");
@@ -233,8 +254,11 @@ mod tests {
 
     #[test]
     fn the_least_disturbed_of_each() {
-        let rounds =
-            [1.0, 2.0, 3.0, 4.0, 5.0].map(|single| Times { single, late: 9.0 - single, ..times(10.0) });
+        let rounds = [1.0, 2.0, 3.0, 4.0, 5.0].map(|single| Times {
+            single,
+            late: 9.0 - single,
+            ..times(10.0)
+        });
         let least = Times { single: 2.0, late: 5.0, ..times(10.0) };
         assert_eq!(Times::least_disturbed(&rounds), least);
     }

@@ -3,8 +3,8 @@
 //! Every strategy is prepared for every number of threads and size of tile, and the renderer so
 //! prepared renders every picture twice: it has to draw the same picture again, and to be the same
 //! after pictures of other sizes. Before each rendering the picture is poisoned, so that a pixel
-//! that nobody writes shows itself, and a [`Recorder`] around the work knows who computed what. That
-//! as many threads compute as were asked for, a [`Rendezvous`] shows.
+//! that nobody writes shows itself, and a [`Recorder`] around the work knows who computed what.
+//! That as many threads compute as were asked for, a [`Rendezvous`] shows.
 
 use crate::attempt::attempt;
 use crate::computing_threads::Rendezvous;
@@ -129,7 +129,8 @@ impl<'a> Check<'a> {
         for case in self.cases {
             pairs.push((case, self.reference_picture(case)?));
         }
-        let settings = |strategy: &&dyn Strategy| self.threads_of(*strategy).len() * self.tiles.len();
+        let settings =
+            |strategy: &&dyn Strategy| self.threads_of(*strategy).len() * self.tiles.len();
         let total = self.strategies.iter().map(settings).sum::<usize>() * pairs.len() * REPETITIONS;
 
         let verdict = Verdict { checked: vec![self.checked()], compared: 0, findings: Vec::new() };
@@ -138,7 +139,8 @@ impl<'a> Check<'a> {
             for &threads in self.threads_of(strategy) {
                 let plans = self.tiles.iter().map(|&tile| Plan { threads, tile });
                 // Up to the first wrong number: each of too few would wait for the timeout again.
-                let _ = plans.clone().all(|plan| run.threads_are_right(strategy, plan, self.timeout));
+                let _ =
+                    plans.clone().all(|plan| run.threads_are_right(strategy, plan, self.timeout));
                 plans.for_each(|plan| run.render_all(strategy, plan));
             }
         }
@@ -148,7 +150,11 @@ impl<'a> Check<'a> {
     fn checked(&self) -> Checked {
         Checked {
             strategies: self.strategies.iter().map(|strategy| strategy.name()).collect(),
-            pictures: self.cases.iter().map(|case| (case.name.clone(), case.width, case.height)).collect(),
+            pictures: self
+                .cases
+                .iter()
+                .map(|case| (case.name.clone(), case.width, case.height))
+                .collect(),
             threads: self.threads.iter().map(|threads| threads.get()).collect(),
             tiles: self.tiles.iter().map(|tile| tile.get()).collect(),
         }
@@ -163,7 +169,8 @@ impl<'a> Check<'a> {
     }
 
     fn reference_picture(&self, case: &Case<'_>) -> Result<Image, CheckError> {
-        // Black, where every other picture starts as poison: what the reference fails to write differs.
+        // Black, where every other picture starts as poison: what the reference fails to write
+        // differs.
         let mut picture = Image::new(case.width, case.height)
             .map_err(|source| CheckError::Image { name: case.name.clone(), source })?;
         let tile = self.tiles.first().copied().unwrap_or(NonZeroU32::MIN);
@@ -185,7 +192,12 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    fn threads_are_right(&mut self, strategy: &dyn Strategy, plan: Plan, timeout: Duration) -> bool {
+    fn threads_are_right(
+        &mut self,
+        strategy: &dyn Strategy,
+        plan: Plan,
+        timeout: Duration,
+    ) -> bool {
         let rendezvous = Rendezvous::of(plan);
         let fault = match rendezvous.computing_threads(strategy, timeout) {
             Ok(found) if found == plan.threads.get() => return true,
@@ -220,7 +232,8 @@ impl Run<'_> {
                     total: self.total,
                 });
                 self.verdict.compared += 1;
-                let faults = render_and_compare(&mut *renderer, plan.threads, &*case.work, expected);
+                let faults =
+                    render_and_compare(&mut *renderer, plan.threads, &*case.work, expected);
                 if faults.is_empty() {
                     continue;
                 }
@@ -267,7 +280,8 @@ fn render_and_compare(
         return vec![Fault::Failed(message)];
     }
     if (found.width(), found.height()) != (expected.width(), expected.height()) {
-        let message = format!("the picture was replaced by one of {}x{}", found.width(), found.height());
+        let message =
+            format!("the picture was replaced by one of {}x{}", found.width(), found.height());
         return vec![Fault::Failed(message)];
     }
     let record = recorder.finish();
@@ -286,7 +300,8 @@ fn too_many_threads(expected: usize, found: usize) -> Option<Fault> {
 
 fn difference(expected: &Image, found: &Image, record: &Record) -> Option<Fault> {
     let pairs = expected.pixels().iter().zip(found.pixels());
-    let mut differing = pairs.enumerate().filter(|(_, (expected, found))| !same_bits(**expected, **found));
+    let mut differing =
+        pairs.enumerate().filter(|(_, (expected, found))| !same_bits(**expected, **found));
     let (index, (&expected, &color)) = differing.next()?;
     let (x, y) = found.position(index);
     Some(Fault::Different(Difference {

@@ -4,13 +4,16 @@
 //! * A speed-up is the median over the rounds of the ratio to the reference in the same round.
 //! * The reference is measured a second time as the control: its "speed-up" over itself is 1, and
 //!   what its interval says instead is the error of the whole table.
-//! * Before the rounds each row renders once without being timed, and is verified; its rays are counted then.
+//! * Before the rounds each row renders once without being timed, and is verified; its rays are
+//!   counted then.
 //! * Preparing, poisoning the picture and verifying it lie outside of the timed span.
 //! * A row that fails, or gives another picture than the reference, is measured no further and gets
 //!   no figures; its samples so far stay. If it is the reference itself, no row gets figures.
-//! * A measurement that is [interrupted](Executor::is_interrupted) ends at once, and is of the complete rounds before.
-//! * Several works that give the same picture are measured [together](Protocol::run_together): their rows take
-//!   their turns in the same rounds, so times of one over times of another are ratios within a round too.
+//! * A measurement that is [interrupted](Executor::is_interrupted) ends at once, and is of the
+//!   complete rounds before.
+//! * Several works that give the same picture are measured [together](Protocol::run_together):
+//!   their rows take their turns in the same rounds, so times of one over times of another are
+//!   ratios within a round too.
 //!
 //! The protocol has an [`Executor`] do the rendering and the timing, so its logic is tested without
 //! either; [`Stopwatch`](crate::stopwatch::Stopwatch) is the real one.
@@ -51,7 +54,8 @@ pub trait Executor {
     /// What the strategy says of its failure.
     fn render(&mut self, entry: &Entry<'_>) -> Result<Rendering, String>;
 
-    /// The same while what is traced is counted, if the executor knows how: its times are no sample.
+    /// The same while what is traced is counted, if the executor knows how: its times are no
+    /// sample.
     ///
     /// # Errors
     ///
@@ -63,7 +67,8 @@ pub trait Executor {
     /// Time since the executor was made.
     fn elapsed(&self) -> Duration;
 
-    /// Whether somebody wants no more. A rendering during which that happened is no sample, however it ended.
+    /// Whether somebody wants no more. A rendering during which that happened is no sample, however
+    /// it ended.
     fn is_interrupted(&self) -> bool {
         false
     }
@@ -87,8 +92,8 @@ pub struct Sample {
     pub prepare_ns: u64,
     /// To render, in nanoseconds.
     pub render_ns: u64,
-    /// To prepare the strategy and render for the first time in a fresh process, in nanoseconds; the other times are
-    /// then of a second rendering. `None` where the process is not fresh.
+    /// To prepare the strategy and render for the first time in a fresh process, in nanoseconds;
+    /// the other times are then of a second rendering. `None` where the process is not fresh.
     pub one_shot_ns: Option<u64>,
     /// CPU time of all threads together while rendering, in nanoseconds, where the system tells.
     pub cpu_ns: Option<u64>,
@@ -99,8 +104,8 @@ pub struct Sample {
 pub struct Rays {
     /// All that were traced.
     pub primary: u64,
-    /// Those of them that one tile of the whole picture would have done without: neighbouring tiles each trace the
-    /// samples that they could share.
+    /// Those of them that one tile of the whole picture would have done without: neighbouring tiles
+    /// each trace the samples that they could share.
     pub redundant: u64,
 }
 
@@ -149,7 +154,10 @@ pub enum CompareError {
 }
 
 /// What `render` gives, unless somebody wants no more before or after it.
-fn uninterrupted<T>(executor: &mut dyn Executor, render: impl FnOnce(&mut dyn Executor) -> T) -> Option<T> {
+fn uninterrupted<T>(
+    executor: &mut dyn Executor,
+    render: impl FnOnce(&mut dyn Executor) -> T,
+) -> Option<T> {
     if executor.is_interrupted() {
         return None;
     }
@@ -168,8 +176,9 @@ impl Comparison {
     #[must_use]
     pub fn imprecise_rows(&self) -> usize {
         let intervals = self.rows.iter().filter_map(|row| Some(row.figures?.speedup));
-        let misses =
-            |interval: &Interval| self.goal.is_some_and(|goal| interval.relative_half_width() > goal);
+        let misses = |interval: &Interval| {
+            self.goal.is_some_and(|goal| interval.relative_half_width() > goal)
+        };
         intervals.filter(misses).count()
     }
 
@@ -186,8 +195,8 @@ impl Comparison {
         control.figures.map(|figures| figures.speedup)
     }
 
-    /// How many times as long as here the reference takes in `other`, measured [together](Protocol::run_together)
-    /// with this one. `None` unless both have figures.
+    /// How many times as long as here the reference takes in `other`, measured
+    /// [together](Protocol::run_together) with this one. `None` unless both have figures.
     #[must_use]
     pub fn gain_over(&self, other: &Self) -> Option<Interval> {
         let times = |comparison: &Self| {
@@ -215,8 +224,9 @@ impl Protocol {
         Ok(self.run_together(reference, entries, &mut [executor], progress)?.swap_remove(0))
     }
 
-    /// A comparison for each executor, as by [`Protocol::run`] but measured in the same rounds. Each renders a work
-    /// of its own, and all have to give the picture that the first gives with `reference`.
+    /// A comparison for each executor, as by [`Protocol::run`] but measured in the same rounds.
+    /// Each renders a work of its own, and all have to give the picture that the first gives with
+    /// `reference`.
     ///
     /// # Errors
     ///
@@ -232,11 +242,15 @@ impl Protocol {
         let base = Entry { strategy: reference, threads: NonZeroUsize::MIN };
         let contenders = entries.iter().filter(|entry| entry.strategy.name() != reference.name());
         let entries: Vec<Entry<'_>> = [base, base].into_iter().chain(contenders.copied()).collect();
-        let roles = || [Role::Reference, Role::Control].into_iter().chain(std::iter::repeat(Role::Contender));
-        let new_rows = || entries.iter().zip(roles()).map(|(entry, role)| Row::new(entry, role)).collect();
+        let roles = || {
+            [Role::Reference, Role::Control].into_iter().chain(std::iter::repeat(Role::Contender))
+        };
+        let new_rows =
+            || entries.iter().zip(roles()).map(|(entry, role)| Row::new(entry, role)).collect();
 
         let rendering = uninterrupted(&mut **first, |executor| executor.render(&base));
-        let digest = rendering.ok_or(CompareError::Interrupted(0))?.map_err(CompareError::Reference)?.digest;
+        let digest =
+            rendering.ok_or(CompareError::Interrupted(0))?.map_err(CompareError::Reference)?.digest;
         let mut tables: Vec<Vec<Row>> = executors.iter().map(|_| new_rows()).collect();
         let mut schedule = self.schedule(tables.len() * entries.len());
         let mut running = vec![true; tables.len()];
@@ -250,7 +264,8 @@ impl Protocol {
             if !running.contains(&true) {
                 break;
             }
-            // Not after each round: the more often one looks, the likelier an interval is narrow by chance.
+            // Not after each round: the more often one looks, the likelier an interval is narrow by
+            // chance.
             if let Some(rounds) = turn.round.filter(|&rounds| turn.first && rounds >= next_look) {
                 if self.is_precise(&tables) {
                     break;

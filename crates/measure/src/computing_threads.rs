@@ -15,7 +15,8 @@ use std::thread::{self, ThreadId};
 use std::time::{Duration, Instant};
 use thiserror::Error;
 
-/// How long a rendezvous waits for threads before it gives up; only a strategy with too few waits it out.
+/// How long a rendezvous waits for threads before it gives up; only a strategy with too few waits
+/// it out.
 pub const TIMEOUT: Duration = Duration::from_secs(10);
 
 /// How long the threads that have met stay together, so that one too many comes to light.
@@ -69,7 +70,11 @@ impl Rendezvous {
     /// # Errors
     ///
     /// The strategy failed, or there is no picture with enough tiles.
-    pub fn computing_threads(&self, strategy: &dyn Strategy, timeout: Duration) -> Result<usize, CountError> {
+    pub fn computing_threads(
+        &self,
+        strategy: &dyn Strategy,
+        timeout: Duration,
+    ) -> Result<usize, CountError> {
         let mut image = Image::new(self.width, self.height)?;
         let meeting = Meeting::new(self.plan.threads, timeout);
         attempt(|| strategy.prepare(self.plan)?.render(&meeting, &mut image))
@@ -205,7 +210,8 @@ mod tests {
                     threads: NonZeroUsize::new(threads).expect("not 0"),
                     tile: NonZeroU32::new(tile).expect("not 0"),
                 };
-                let Rendezvous { plan: Plan { tile: side, .. }, width, height } = Rendezvous::of(plan);
+                let Rendezvous { plan: Plan { tile: side, .. }, width, height } =
+                    Rendezvous::of(plan);
                 let mut image = Image::new(width, height).expect("a picture");
                 assert_eq!(image.tiles(side).len(), 2 * threads, "{plan:?}");
                 assert!(width * height <= MAX_PIXELS, "{plan:?}: {width} x {height}");

@@ -1,10 +1,11 @@
 //! Where the thread-time of a rendering went, and so what of its efficiency is lost to what.
 //!
-//! A rendering that takes `w` on `n` threads has a thread-time of `n w`. A thread computes, is between two pieces,
-//! has not begun yet, or is done and waits for the others: an [`Account`] puts each nanosecond into one of these.
-//! What a strategy loses is its thread-time less the time that the sequential rendering takes, and the [`Losses`] are
-//! the differences between three accounts: of the sequential rendering, of the strategy on one thread, and on all.
-//! Since an account leaves nothing out, they add up to that exactly.
+//! A rendering that takes `w` on `n` threads has a thread-time of `n w`. A thread computes, is
+//! between two pieces, has not begun yet, or is done and waits for the others: an [`Account`] puts
+//! each nanosecond into one of these. What a strategy loses is its thread-time less the time that
+//! the sequential rendering takes, and the [`Losses`] are the differences between three accounts:
+//! of the sequential rendering, of the strategy on one thread, and on all. Since an account leaves
+//! nothing out, they add up to that exactly.
 
 use crate::timeline::{Cost, Lane, Timeline};
 
@@ -19,7 +20,8 @@ pub struct Account {
     pub busy_ns: f64,
     /// From each piece to the thread's next.
     pub between_ns: f64,
-    /// From a thread's last piece to the last of all. A thread without any waits from the first piece of all on.
+    /// From a thread's last piece to the last of all. A thread without any waits from the first
+    /// piece of all on.
     pub waiting_ns: f64,
     /// Before a thread's first piece, and after the last of all.
     pub serial_ns: f64,
@@ -28,10 +30,11 @@ pub struct Account {
 /// Why thread-time is lost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cause {
-    /// More is computed: what the sequential rendering's tiles share, smaller pieces compute again. Calls of the work,
-    /// and the memory that they find cold, are in it too.
+    /// More is computed: what the sequential rendering's tiles share, smaller pieces compute again.
+    /// Calls of the work, and the memory that they find cold, are in it too.
     Redundant,
-    /// The same pieces take longer on all threads than on one: memory, clock rate, shared cores, other programs.
+    /// The same pieces take longer on all threads than on one: memory, clock rate, shared cores,
+    /// other programs.
     Slowdown,
     /// From piece to piece, as long as a single thread takes for it.
     Dispatch,
@@ -45,8 +48,14 @@ pub enum Cause {
 
 impl Cause {
     /// In the order of the tables.
-    pub const ALL: [Self; 6] =
-        [Self::Redundant, Self::Slowdown, Self::Dispatch, Self::Contention, Self::Imbalance, Self::Serial];
+    pub const ALL: [Self; 6] = [
+        Self::Redundant,
+        Self::Slowdown,
+        Self::Dispatch,
+        Self::Contention,
+        Self::Imbalance,
+        Self::Serial,
+    ];
 }
 
 /// What is lost to each cause, in nanoseconds of thread-time. Negative where something is gained.
@@ -61,14 +70,15 @@ struct Span {
 }
 
 impl Account {
-    /// The account of a rendering on `threads` threads, or on as many as computed if these are more, without what it
-    /// cost to record.
+    /// The account of a rendering on `threads` threads, or on as many as computed if these are
+    /// more, without what it cost to record.
     ///
-    /// Each piece of a thread is taken to have begun earlier by the cost of those that it recorded before, so the
-    /// rendering ends earlier by what that brings the last of all forward.
+    /// Each piece of a thread is taken to have begun earlier by the cost of those that it recorded
+    /// before, so the rendering ends earlier by what that brings the last of all forward.
     #[must_use]
     pub fn of(timeline: &Timeline, threads: usize, cost: Cost) -> Self {
-        let spans: Vec<Span> = timeline.lanes.iter().filter_map(|lane| Span::of(lane, cost)).collect();
+        let spans: Vec<Span> =
+            timeline.lanes.iter().filter_map(|lane| Span::of(lane, cost)).collect();
         let threads = threads.max(spans.len()).max(1);
         let recorded_wall = timeline.wall_ns as f64;
         let recorded_last =
@@ -77,7 +87,14 @@ impl Account {
             // Nobody computed.
             let serial_ns = threads as f64 * recorded_wall;
             let (busy_ns, between_ns, waiting_ns) = (0.0, 0.0, 0.0);
-            return Self { threads, wall_ns: recorded_wall, busy_ns, between_ns, waiting_ns, serial_ns };
+            return Self {
+                threads,
+                wall_ns: recorded_wall,
+                busy_ns,
+                between_ns,
+                waiting_ns,
+                serial_ns,
+            };
         };
         let first = spans.iter().map(|span| span.begin).fold(f64::INFINITY, f64::min);
         let last = spans.iter().map(|span| span.end).fold(0.0, f64::max);
@@ -114,8 +131,8 @@ impl Span {
 }
 
 impl Losses {
-    /// What a strategy loses `together`, on all its threads, by what it does `alone`, on one, and by what the
-    /// `sequential` rendering does.
+    /// What a strategy loses `together`, on all its threads, by what it does `alone`, on one, and
+    /// by what the `sequential` rendering does.
     #[must_use]
     pub fn between(sequential: &Account, alone: &Account, together: &Account) -> Self {
         Self(Cause::ALL.map(|cause| match cause {
@@ -163,11 +180,15 @@ mod tests {
             begin_ns,
             end_ns,
         };
-        let lane = |pieces: &&[(u64, u64)]| Lane { name: None, pieces: pieces.iter().map(piece).collect() };
+        let lane = |pieces: &&[(u64, u64)]| Lane {
+            name: None,
+            pieces: pieces.iter().map(piece).collect(),
+        };
         Timeline { wall_ns, lanes: lanes.iter().map(lane).collect() }
     }
 
-    /// Two threads: one from 10 to 90 with a gap of 5, the other from 20 to 60 with gaps of 1 and 3.
+    /// Two threads: one from 10 to 90 with a gap of 5, the other from 20 to 60 with gaps of 1 and
+    /// 3.
     fn uneven() -> Timeline {
         timeline(100, &[&[(10, 50), (55, 90)], &[(20, 30), (31, 40), (43, 60)]])
     }
@@ -191,7 +212,10 @@ mod tests {
     #[test]
     fn a_thread_without_a_piece_waits_from_the_first_to_the_last() {
         let account = Account::of(&uneven(), 4, FREE);
-        assert_eq!((account.waiting_ns, account.serial_ns), (30.0 + 2.0 * 80.0, 50.0 + 2.0 * (10.0 + 10.0)));
+        assert_eq!(
+            (account.waiting_ns, account.serial_ns),
+            (30.0 + 2.0 * 80.0, 50.0 + 2.0 * (10.0 + 10.0))
+        );
         assert_eq!((account.busy_ns, account.between_ns), (111.0, 9.0));
         // More threads than there should be are all there.
         assert_eq!(Account::of(&uneven(), 1, FREE), Account::of(&uneven(), 2, FREE));

@@ -1,10 +1,11 @@
-//! Why strategies lose what they lose: renderings that are recorded beside renderings that are not, in the same
-//! interleaved rounds.
+//! Why strategies lose what they lose: renderings that are recorded beside renderings that are not,
+//! in the same interleaved rounds.
 //!
-//! What is explained is the loss of the quickest plain renderings: what slows a rendering down from outside is no
-//! fault of its strategy. The explanation is that of the quickest recorded ones, the cost of recording taken off. Their
-//! accounts add up exactly; how far they miss the plain ones is part of the result. Source for the quickest: Chen and
-//! Revels, "Robust benchmarking in noisy environments", 2016.
+//! What is explained is the loss of the quickest plain renderings: what slows a rendering down from
+//! outside is no fault of its strategy. The explanation is that of the quickest recorded ones, the
+//! cost of recording taken off. Their accounts add up exactly; how far they miss the plain ones is
+//! part of the result. Source for the quickest: Chen and Revels, "Robust benchmarking in noisy
+//! environments", 2016.
 
 use crate::attempt::attempt;
 use crate::efficiency::{Account, Losses};
@@ -79,7 +80,8 @@ pub struct Row {
     pub threads: usize,
     /// Its shortest time, in nanoseconds, not recorded.
     pub wall_ns: f64,
-    /// What it loses of its thread-time, in nanoseconds, not recorded: threads times its time, less the reference's.
+    /// What it loses of its thread-time, in nanoseconds, not recorded: threads times its time, less
+    /// the reference's.
     pub lost_ns: f64,
     /// To what. Their sum misses [`Row::lost_ns`] by what recorded and plain renderings differ in.
     pub losses: Losses,
@@ -146,7 +148,8 @@ struct Places {
 }
 
 impl Experiment<'_> {
-    /// Explains `strategies` on `threads` threads each. `progress` is told how much is done, 0 to 1.
+    /// Explains `strategies` on `threads` threads each. `progress` is told how much is done, 0 to
+    /// 1.
     ///
     /// # Errors
     ///
@@ -171,8 +174,11 @@ impl Experiment<'_> {
                 series.len() - 1
             };
             let recorded = add(threads, Recording::Timeline);
-            let alone =
-                if threads.get() == 1 { recorded } else { add(NonZeroUsize::MIN, Recording::Account) };
+            let alone = if threads.get() == 1 {
+                recorded
+            } else {
+                add(NonZeroUsize::MIN, Recording::Account)
+            };
             places.push(Places { alone, plain: add(threads, Recording::Off), recorded });
         }
 
@@ -204,7 +210,8 @@ fn row(series: &mut [Series<'_>], &Places { alone, plain, recorded }: &Places, c
     let threads = series[plain].threads.get();
     let wall_ns = series[plain].shortest_ns();
     // The first two are the reference's.
-    let [sequential, on_one, on_all] = [1, alone, recorded].map(|place| series[place].account(cost));
+    let [sequential, on_one, on_all] =
+        [1, alone, recorded].map(|place| series[place].account(cost));
     let over_plain = ratio_interval(&series[recorded].wall_ns, &series[plain].wall_ns);
     Row {
         strategy: series[plain].strategy.name(),
@@ -214,7 +221,11 @@ fn row(series: &mut [Series<'_>], &Places { alone, plain, recorded }: &Places, c
         losses: Losses::between(&sequential, &on_one, &on_all),
         recorded: over_plain.unwrap_or(Interval { median: 1.0, low: 1.0, high: 1.0 }),
         long_gap_ns: series[alone].quickest.as_ref().map_or(0.0, |quickest| quickest.long_gap_ns),
-        timeline: series[recorded].quickest.take().map(|quickest| quickest.timeline).unwrap_or_default(),
+        timeline: series[recorded]
+            .quickest
+            .take()
+            .map(|quickest| quickest.timeline)
+            .unwrap_or_default(),
     }
 }
 
@@ -259,7 +270,11 @@ impl<'a> Series<'a> {
                 wall_ns: timeline.wall_ns,
                 account: Account::of(&timeline, self.threads.get(), cost),
                 long_gap_ns: long_gap_ns(&timeline),
-                timeline: if self.recording == Recording::Timeline { timeline } else { Timeline::default() },
+                timeline: if self.recording == Recording::Timeline {
+                    timeline
+                } else {
+                    Timeline::default()
+                },
             });
         }
         Ok(())

@@ -32,7 +32,8 @@ pub struct Picture {
     pub repetition: usize,
 }
 
-/// What is wrong. Pixels are counted over the whole picture; the first is the first in reading order.
+/// What is wrong. Pixels are counted over the whole picture; the first is the first in reading
+/// order.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Fault {
     /// The picture is not the reference's.
@@ -110,7 +111,10 @@ impl fmt::Display for Fault {
         match self {
             Self::Different(difference) => difference.fmt(f),
             Self::NotOnce { pixels, x, y, computations } => {
-                write!(f, "pixels not computed exactly once: {pixels}, first ({x}, {y}), computed ")?;
+                write!(
+                    f,
+                    "pixels not computed exactly once: {pixels}, first ({x}, {y}), computed "
+                )?;
                 match computations.as_slice() {
                     [] => write!(f, "by nobody"),
                     several => {
@@ -130,7 +134,11 @@ impl fmt::Display for Fault {
 impl fmt::Display for Difference {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { pixels, x, y, expected, found, computation } = self;
-        write!(f, "differing pixels: {pixels}, first ({x}, {y}), expected {}, found ", Color(*expected))?;
+        write!(
+            f,
+            "differing pixels: {pixels}, first ({x}, {y}), expected {}, found ",
+            Color(*expected)
+        )?;
         match found {
             Some(color) => write!(f, "{}", Color(*color))?,
             None => write!(f, "never written")?,
@@ -168,7 +176,8 @@ mod tests {
 
     #[test]
     fn a_difference_says_everything() {
-        let picture = Picture { scene: "room".to_owned(), width: 97, height: 61, tile: 8, repetition: 2 };
+        let picture =
+            Picture { scene: "room".to_owned(), width: 97, height: 61, tile: 8, repetition: 2 };
         let difference = Difference {
             pixels: 32,
             x: 9,
@@ -189,13 +198,15 @@ mod tests {
              (9, 17), expected [0.1, 1.0, -0.0], found [0.10000001, NaN(0x7fc00001), 0.0], computed in \
              tile 8x4 at (8, 16) by thread 1 (\"tile-queue 0\")"
         );
-        finding.fault = Fault::Different(Difference { found: None, computation: None, ..difference });
+        finding.fault =
+            Fault::Different(Difference { found: None, computation: None, ..difference });
         assert!(finding.to_string().ends_with("found never written, computed by nobody"));
     }
 
     #[test]
     fn the_other_faults() {
-        let finding = |fault| Finding { strategy: "one", threads: 1, picture: None, fault }.to_string();
+        let finding =
+            |fault| Finding { strategy: "one", threads: 1, picture: None, fault }.to_string();
         assert_eq!(
             finding(Fault::Threads { expected: 1, found: 2 }),
             "one, 1 thread: computing threads: expected 1, found 2"

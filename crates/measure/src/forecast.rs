@@ -1,13 +1,15 @@
-//! What more threads would make of a picture, from measured costs, and beside it what the threads here make of it.
+//! What more threads would make of a picture, from measured costs, and beside it what the threads
+//! here make of it.
 //!
-//! * Every strategy is timed on the numbers of threads that this machine has, by the [protocol](crate::compare) of a
-//!   comparison.
-//! * In the same rounds [independent](crate::independent) threads draw the whole picture each: so much slower is every
-//!   piece taken to be beside other threads.
-//! * And in the same rounds one thread draws the picture [piece by piece](crate::piece_costs) and times each.
+//! * Every strategy is timed on the numbers of threads that this machine has, by the
+//!   [protocol](crate::compare) of a comparison.
+//! * In the same rounds [independent](crate::independent) threads draw the whole picture each: so
+//!   much slower is every piece taken to be beside other threads.
+//! * And in the same rounds one thread draws the picture [piece by piece](crate::piece_costs) and
+//!   times each.
 //! * The costs of [threads](crate::calibration) are measured apart, before.
-//! * From these alone the [simulation](rayweave_predict) predicts all speed-ups. Nothing of it is fitted to the times
-//!   of the strategies.
+//! * From these alone the [simulation](rayweave_predict) predicts all speed-ups. Nothing of it is
+//!   fitted to the times of the strategies.
 
 use crate::calibration::calibrate;
 use crate::compare::{CompareError, Comparison, Entry, Row};
@@ -51,7 +53,8 @@ pub struct Forecast {
     pub curves: Vec<Curve>,
     /// Why strategies are missing.
     pub unavailable: Vec<String>,
-    /// How many times as long as alone a thread takes beside others that share nothing with it, by the number of all.
+    /// How many times as long as alone a thread takes beside others that share nothing with it, by
+    /// the number of all.
     pub slowdowns: Vec<(usize, Interval)>,
     /// What was measured.
     pub comparison: Comparison,
@@ -113,20 +116,25 @@ pub enum ForecastError {
     #[error("{0}")]
     Strategy(String),
     /// No strategy that starts threads.
-    #[error("there is nothing to predict of a strategy without threads: name one that starts threads")]
+    #[error(
+        "there is nothing to predict of a strategy without threads: name one that starts threads"
+    )]
     Nothing,
 }
 
 impl Question<'_> {
-    /// Measures and predicts; `progress` is told the share of a stage that is done, between timed spans.
+    /// Measures and predicts; `progress` is told the share of a stage that is done, between timed
+    /// spans.
     ///
     /// # Errors
     ///
-    /// No picture of this size, no strategy that starts threads, or one that fails though it could be prepared.
+    /// No picture of this size, no strategy that starts threads, or one that fails though it could
+    /// be prepared.
     pub fn answer(&self, mut progress: impl FnMut(Stage, f64)) -> Result<Forecast, ForecastError> {
         let mut unavailable = Vec::new();
         let mut strategies = Vec::new();
-        for &strategy in self.strategies.iter().filter(|s| s.threads_start() != ThreadsStart::Never) {
+        for &strategy in self.strategies.iter().filter(|s| s.threads_start() != ThreadsStart::Never)
+        {
             match of_pixels(strategy, NonZeroUsize::MIN) {
                 Ok(_) => strategies.push(strategy),
                 Err(reason) => unavailable.push(reason),
@@ -135,16 +143,20 @@ impl Question<'_> {
         if strategies.is_empty() && unavailable.is_empty() {
             return Err(ForecastError::Nothing);
         }
-        let overheads =
-            calibrate(self.reference, &strategies, self.available, |done| progress(Stage::Overheads, done))
-                .map_err(ForecastError::Strategy)?;
+        let overheads = calibrate(self.reference, &strategies, self.available, |done| {
+            progress(Stage::Overheads, done)
+        })
+        .map_err(ForecastError::Strategy)?;
         let here: Vec<NonZeroUsize> =
             self.threads.iter().copied().filter(|threads| *threads <= self.available).collect();
-        let together = here.iter().filter(|threads| **threads != self.available).chain([&self.available]);
-        let several: Vec<NonZeroUsize> = together.copied().filter(|threads| threads.get() > 1).collect();
+        let together =
+            here.iter().filter(|threads| **threads != self.available).chain([&self.available]);
+        let several: Vec<NonZeroUsize> =
+            together.copied().filter(|threads| threads.get() > 1).collect();
         let independent = Independent::default();
         let kinds: Vec<Piece> = strategies.iter().map(|strategy| strategy.rule().piece).collect();
-        let pieces: Vec<OneByOne> = Cut::for_pieces(&kinds).into_iter().map(OneByOne::new).collect();
+        let pieces: Vec<OneByOne> =
+            Cut::for_pieces(&kinds).into_iter().map(OneByOne::new).collect();
 
         let timed = strategies
             .iter()
@@ -153,13 +165,18 @@ impl Question<'_> {
         let alone = pieces.iter().map(|strategy| Entry { strategy, threads: NonZeroUsize::MIN });
         let entries: Vec<Entry<'_>> = timed.chain(beside).chain(alone).collect();
         let mut stopwatch = Stopwatch::new(self.work, self.size.0, self.size.1, self.tile)?;
-        let comparison = self
-            .protocol
-            .run(self.reference, &entries, &mut stopwatch, |at| progress(Stage::Renderings, at.fraction))?;
+        let comparison = self.protocol.run(self.reference, &entries, &mut stopwatch, |at| {
+            progress(Stage::Renderings, at.fraction)
+        })?;
 
         let Some(reference) = comparison.reference_ns() else {
             // No row has figures, and the reference's says why.
-            return Ok(Forecast { curves: Vec::new(), unavailable, slowdowns: Vec::new(), comparison });
+            return Ok(Forecast {
+                curves: Vec::new(),
+                unavailable,
+                slowdowns: Vec::new(),
+                comparison,
+            });
         };
         let reference_ns = comparison.rows.first().map(Row::render_ns).unwrap_or_default();
         let slowdown_of = |threads: &NonZeroUsize| {
@@ -168,8 +185,10 @@ impl Question<'_> {
             Some((threads, independent.slowdown(threads, &reference_ns)?))
         };
         let slowdowns: Vec<(usize, Interval)> = several.iter().filter_map(slowdown_of).collect();
-        let speedup = |pieces: &OneByOne| Some(find(&comparison, pieces.name(), 1)?.figures?.speedup.median);
-        let measured: Vec<_> = pieces.iter().filter_map(|pieces| Some((pieces, speedup(pieces)?))).collect();
+        let speedup =
+            |pieces: &OneByOne| Some(find(&comparison, pieces.name(), 1)?.figures?.speedup.median);
+        let measured: Vec<_> =
+            pieces.iter().filter_map(|pieces| Some((pieces, speedup(pieces)?))).collect();
         let costs = PieceCosts::new(&measured, reference);
         let curve = |(strategy, overheads): (&&dyn Strategy, &Overheads)| {
             let rule = strategy.rule();
@@ -181,7 +200,8 @@ impl Question<'_> {
             let times: Vec<(usize, f64)> =
                 self.threads.iter().map(|threads| (threads.get(), time(threads.get()))).collect();
             let one = time(1);
-            let own: Vec<(usize, f64)> = times.iter().map(|&(threads, time)| (threads, one / time)).collect();
+            let own: Vec<(usize, f64)> =
+                times.iter().map(|&(threads, time)| (threads, one / time)).collect();
             let points = times.iter().map(|&(threads, time)| {
                 let row = find(&comparison, strategy.name(), threads);
                 let measured = row.and_then(|row| row.figures).map(|figures| figures.speedup);
@@ -196,8 +216,10 @@ impl Question<'_> {
             }
         };
         // Whose pieces could not be timed has no curve, and the row of these pieces says why.
-        let known =
-            strategies.iter().zip(&overheads).filter(|(strategy, _)| costs.know(strategy.rule().piece));
+        let known = strategies
+            .iter()
+            .zip(&overheads)
+            .filter(|(strategy, _)| costs.know(strategy.rule().piece));
         let curves = known.map(curve).collect();
         Ok(Forecast { curves, unavailable, slowdowns, comparison })
     }
@@ -207,7 +229,8 @@ fn find<'a>(comparison: &'a Comparison, strategy: &str, threads: usize) -> Optio
     comparison.rows.iter().find(|row| (row.strategy, row.threads) == (strategy, threads))
 }
 
-/// For so many threads: that of the largest number measured that is not larger, and so of all threads here for any more.
+/// For so many threads: that of the largest number measured that is not larger, and so of all
+/// threads here for any more.
 fn slowdown(slowdowns: &[(usize, Interval)], threads: usize) -> f64 {
     let known = slowdowns.iter().rfind(|(measured, _)| *measured <= threads);
     // Company makes no thread faster: below 1 is chance.

@@ -3,8 +3,8 @@
 use crate::statistics::{Interval, ratio_interval};
 use crate::stopwatch::nanoseconds;
 use rayweave_contract::{
-    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart, Work,
-    panic_message, render_tile,
+    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart,
+    Work, panic_message, render_tile,
 };
 use std::collections::BTreeMap;
 use std::io;
@@ -14,8 +14,8 @@ use std::time::{Duration, Instant};
 
 const NAME: &str = "independent";
 
-/// No way to share work: with N threads the picture is drawn N times. How much longer that takes than once is what the
-/// machine's cores cost each other.
+/// No way to share work: with N threads the picture is drawn N times. How much longer that takes
+/// than once is what the machine's cores cost each other.
 #[derive(Debug, Default)]
 pub struct Independent {
     shared: Arc<Mutex<Shared>>,
@@ -26,16 +26,18 @@ pub struct Independent {
 struct Shared {
     /// Of each thread but the first: no rendering but the first pays for fresh memory.
     copies: Vec<Image>,
-    /// Of each rendering, by the number of threads, how many nanoseconds a thread drew, in the mean.
+    /// Of each rendering, by the number of threads, how many nanoseconds a thread drew, in the
+    /// mean.
     thread_ns: BTreeMap<usize, Vec<u64>>,
 }
 
 impl Independent {
-    /// How many times as long as alone a thread drew with `threads` of them, round by round: in the latest renderings, as
-    /// many as there are times alone, `alone_ns` in nanoseconds. `None` without any.
+    /// How many times as long as alone a thread drew with `threads` of them, round by round: in the
+    /// latest renderings, as many as there are times alone, `alone_ns` in nanoseconds. `None`
+    /// without any.
     ///
-    /// Of each rendering the mean of its threads counts, not the last: where work is shared, whoever is not disturbed
-    /// does more of it.
+    /// Of each rendering the mean of its threads counts, not the last: where work is shared,
+    /// whoever is not disturbed does more of it.
     #[must_use]
     pub fn slowdown(&self, threads: usize, alone_ns: &[u64]) -> Option<Interval> {
         let shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
@@ -85,7 +87,10 @@ impl Renderer for Copying {
         }
         let draw = |image: &mut Image| {
             let begin = Instant::now();
-            image.tiles(self.plan.tile).iter_mut().try_for_each(|tile| render_tile(NAME, work, tile))?;
+            image
+                .tiles(self.plan.tile)
+                .iter_mut()
+                .try_for_each(|tile| render_tile(NAME, work, tile))?;
             Ok(begin.elapsed())
         };
         let drawn = thread::scope(|scope| {
@@ -97,9 +102,9 @@ impl Renderer for Copying {
             let mut drawn = vec![draw(image)?];
             for other in others {
                 let joined = other.join();
-                drawn.push(
-                    joined.map_err(|payload| cannot_start(io::Error::other(panic_message(&*payload))))??,
-                );
+                drawn.push(joined.map_err(|payload| {
+                    cannot_start(io::Error::other(panic_message(&*payload)))
+                })??);
             }
             Ok(drawn)
         })?;
@@ -120,15 +125,20 @@ mod tests {
     use crate::synthetic::even;
     use std::num::{NonZeroU32, NonZeroUsize};
 
-    /// Catches threads that share the work, and a picture of another size that is drawn into an old copy.
+    /// Catches threads that share the work, and a picture of another size that is drawn into an old
+    /// copy.
     #[test]
     fn each_thread_draws_all_of_it() {
-        let (threads, tile) = (NonZeroUsize::new(3).expect("not 0"), NonZeroU32::new(2).expect("not 0"));
-        let mut renderer = Independent::default().prepare(Plan { threads, tile }).expect("prepared");
+        let (threads, tile) =
+            (NonZeroUsize::new(3).expect("not 0"), NonZeroU32::new(2).expect("not 0"));
+        let mut renderer =
+            Independent::default().prepare(Plan { threads, tile }).expect("prepared");
         for (width, height) in [(5, 4), (2, 7)] {
             let work = even(1);
             let recorder = Recorder::new(&work);
-            renderer.render(&recorder, &mut Image::new(width, height).expect("a picture")).expect("drawn");
+            renderer
+                .render(&recorder, &mut Image::new(width, height).expect("a picture"))
+                .expect("drawn");
             let record = recorder.finish();
             assert_eq!(record.threads(), 3);
             assert!(record.times_computed(width, height).iter().all(|times| *times == 3));
@@ -148,7 +158,8 @@ mod tests {
         assert_eq!(independent.slowdown(2, &[4]), None);
         let logs = [(2, vec![900, 10, 12, 14]), (3, vec![900, 70])];
         independent.shared.lock().expect("nobody panicked").thread_ns.extend(logs);
-        let median = |threads, alone: &[u64]| independent.slowdown(threads, alone).map(|found| found.median);
+        let median =
+            |threads, alone: &[u64]| independent.slowdown(threads, alone).map(|found| found.median);
         assert_eq!(median(2, &[10, 8, 10]), Some(1.4));
         assert_eq!(median(3, &[10]), Some(7.0));
         assert_eq!(median(4, &[10]), None);

@@ -5,8 +5,8 @@
 //! * [`compare`]: interleaved rounds in which every timed picture is verified;
 //! * [`overhead`]: what a strategy costs beside its work, on synthetic work;
 //! * [`forecast`]: what more threads would make of a picture, beside what those here make of it;
-//! * [`explanation`]: what becomes of the efficiency that a strategy loses, by an account of every thread's time
-//!   ([`efficiency`]);
+//! * [`explanation`]: what becomes of the efficiency that a strategy loses, by an account of every
+//!   thread's time ([`efficiency`]);
 //! * [`machine`]: what was measured on, and with what;
 //! * [`noise`]: what else went on at the time.
 //!

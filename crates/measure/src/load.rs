@@ -4,7 +4,8 @@ use rayweave_contract::{Image, ImageError, Work};
 use std::num::NonZeroU32;
 use std::time::{Duration, Instant};
 
-/// Passes; of each tile's times the shortest counts, since everything that disturbs makes them longer.
+/// Passes; of each tile's times the shortest counts, since everything that disturbs makes them
+/// longer.
 const PASSES: usize = 3;
 
 /// What the tiles of a picture cost, from the top left, row by row.
@@ -19,7 +20,12 @@ impl Load {
     /// # Errors
     ///
     /// There is no such picture.
-    pub fn of(work: &dyn Work, width: u32, height: u32, tile: NonZeroU32) -> Result<Self, ImageError> {
+    pub fn of(
+        work: &dyn Work,
+        width: u32,
+        height: u32,
+        tile: NonZeroU32,
+    ) -> Result<Self, ImageError> {
         let mut image = Image::new(width, height)?;
         let mut pass = || -> Vec<Duration> {
             let time = |tile: &mut rayweave_contract::Tile<'_>| {
@@ -42,8 +48,8 @@ impl Load {
         Self { costs }
     }
 
-    /// If each of `threads` threads gets an equal range of the tiles: the cost of the dearest range over the mean. 1
-    /// is even; the speed-up is at most `threads` over it.
+    /// If each of `threads` threads gets an equal range of the tiles: the cost of the dearest range
+    /// over the mean. 1 is even; the speed-up is at most `threads` over it.
     #[must_use]
     pub fn unevenness(&self, threads: usize) -> f64 {
         let (tiles, threads) = (self.costs.len(), threads.max(1));
@@ -55,7 +61,8 @@ impl Load {
         dearest * threads as f64 / self.total()
     }
 
-    /// The share of the whole cost that the dearest tile has: the speed-up by tiles is at most 1 over it.
+    /// The share of the whole cost that the dearest tile has: the speed-up by tiles is at most 1
+    /// over it.
     #[must_use]
     pub fn dearest_tile(&self) -> f64 {
         self.costs.iter().max().map_or(0.0, Duration::as_secs_f64) / self.total()

@@ -70,7 +70,10 @@ fn logical_cores(cpuinfo: &str) -> Option<usize> {
 
 /// The tightest limit of the control groups that this process is in, in cores.
 fn quota() -> Option<f64> {
-    cpu_groups().iter().filter_map(|(version, folder)| limit(*version, folder)).min_by(f64::total_cmp)
+    cpu_groups()
+        .iter()
+        .filter_map(|(version, folder)| limit(*version, folder))
+        .min_by(f64::total_cmp)
 }
 
 /// The folders of the control groups that bind this process: its own, and those around it.
@@ -108,7 +111,9 @@ fn cpu_group(line: &str) -> Option<(Version, PathBuf)> {
 fn limit(version: Version, folder: &Path) -> Option<f64> {
     let read = |file| fs::read_to_string(folder.join(file)).ok();
     match version {
-        Version::V1 => cores(&format!("{} {}", read("cpu.cfs_quota_us")?, read("cpu.cfs_period_us")?)),
+        Version::V1 => {
+            cores(&format!("{} {}", read("cpu.cfs_quota_us")?, read("cpu.cfs_period_us")?))
+        }
         Version::V2 => cores(&read("cpu.max")?),
     }
 }

@@ -1,4 +1,5 @@
-//! What else went on while something was measured: other programs, the hypervisor, limits, the clock rate.
+//! What else went on while something was measured: other programs, the hypervisor, limits, the
+//! clock rate.
 //!
 //! All of it is what Linux shows under `/proc` and `/sys`; what is not there is unknown.
 
@@ -9,7 +10,8 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// The length of a tick in `/proc/stat`, in milliseconds: a hundred a second, whatever the kernel's own.
+/// The length of a tick in `/proc/stat`, in milliseconds: a hundred a second, whatever the kernel's
+/// own.
 const TICK_MS: u64 = 10;
 
 /// The share of the machine that others may use before a measurement counts as disturbed.
@@ -35,7 +37,8 @@ pub struct Noise {
 }
 
 impl Noise {
-    /// Whether the times are to be doubted: others had more than 2 % of the machine, or the limit was reached.
+    /// Whether the times are to be doubted: others had more than 2 % of the machine, or the limit
+    /// was reached.
     #[must_use]
     pub fn is_disturbing(&self) -> bool {
         self.share_of_others().is_some_and(|share| share > QUIET)
@@ -118,7 +121,8 @@ struct Times {
 }
 
 impl Times {
-    /// From the line "cpu user nice system idle iowait irq softirq steal ..." of `/proc/stat`, in ticks.
+    /// From the line "cpu user nice system idle iowait irq softirq steal ..." of `/proc/stat`, in
+    /// ticks.
     fn of(stat: &str) -> Option<Self> {
         let line = stat.lines().find_map(|line| line.strip_prefix("cpu "))?;
         let ticks = line.split_whitespace().map(|number| number.parse().ok());
@@ -132,8 +136,9 @@ impl Times {
 
 /// How often the groups that this process is in have been stopped, all of them together.
 fn throttled() -> Option<u64> {
-    let stats =
-        cpu_groups().into_iter().filter_map(|(_, folder)| fs::read_to_string(folder.join("cpu.stat")).ok());
+    let stats = cpu_groups()
+        .into_iter()
+        .filter_map(|(_, folder)| fs::read_to_string(folder.join("cpu.stat")).ok());
     stats.filter_map(|stat| times_throttled(&stat)).reduce(|a, b| a + b)
 }
 
@@ -144,7 +149,10 @@ fn times_throttled(stat: &str) -> Option<u64> {
 /// The clock rate of each core now.
 fn megahertz() -> Vec<f64> {
     let Ok(cores) = fs::read_dir("/sys/devices/system/cpu") else { return Vec::new() };
-    cores.filter_map(|core| kilohertz(&core.ok()?.path())).map(|kilohertz| kilohertz / 1e3).collect()
+    cores
+        .filter_map(|core| kilohertz(&core.ok()?.path()))
+        .map(|kilohertz| kilohertz / 1e3)
+        .collect()
 }
 
 fn kilohertz(core: &Path) -> Option<f64> {
@@ -152,7 +160,9 @@ fn kilohertz(core: &Path) -> Option<f64> {
 }
 
 fn range(values: impl Iterator<Item = f64>) -> Option<RangeInclusive<f64>> {
-    values.map(|value| value..=value).reduce(|a, b| a.start().min(*b.start())..=a.end().max(*b.end()))
+    values
+        .map(|value| value..=value)
+        .reduce(|a, b| a.start().min(*b.start())..=a.end().max(*b.end()))
 }
 
 #[cfg(test)]
@@ -162,7 +172,8 @@ mod tests {
     #[test]
     fn times_of_all_processors() {
         let stat = "cpu  100 20 30 40000000000 500 6 7 8 9 10\ncpu0 1 2 3 4 5 6 7 8 9 10\n";
-        let expected = Times { busy: Duration::from_millis(1630), stolen: Duration::from_millis(80) };
+        let expected =
+            Times { busy: Duration::from_millis(1630), stolen: Duration::from_millis(80) };
         assert_eq!(Times::of(stat), Some(expected));
         for nonsense in ["", "cpu0 1 2 3 4 5 6 7 8", "cpu 1 2 3", "cpu a b c d e f g h"] {
             assert_eq!(Times::of(nonsense), None, "{nonsense}");
@@ -203,14 +214,20 @@ mod tests {
     #[cfg(target_os = "linux")]
     #[test]
     fn our_own_time_is_not_foreign() {
-        let stat =
-            || Times::of(&fs::read_to_string("/proc/stat").expect("Linux")).expect("its first line").busy;
+        let stat = || {
+            Times::of(&fs::read_to_string("/proc/stat").expect("Linux"))
+                .expect("its first line")
+                .busy
+        };
         let (busy_before, watch) = (stat(), Watch::start());
         let before = Usage::of_this_process().expect("Linux").cpu;
         while Usage::of_this_process().expect("Linux").cpu < before + Duration::from_millis(100) {}
         let (foreign, busy) = (watch.finish(1).foreign.expect("Linux"), stat() - busy_before);
         // All that was done, less what we did; ticks are coarse.
         let coarseness = Duration::from_millis(4 * TICK_MS);
-        assert!(foreign + Duration::from_millis(100) <= busy + coarseness, "{foreign:?} of {busy:?}");
+        assert!(
+            foreign + Duration::from_millis(100) <= busy + coarseness,
+            "{foreign:?} of {busy:?}"
+        );
     }
 }

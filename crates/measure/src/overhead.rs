@@ -1,8 +1,8 @@
-//! What a strategy costs beside its work, on synthetic work: a piece's dispatch, the smallest task that is worth
-//! it, the smallest picture, and the first use.
+//! What a strategy costs beside its work, on synthetic work: a piece's dispatch, the smallest task
+//! that is worth it, the smallest picture, and the first use.
 //!
-//! All strategies are measured in interleaved rounds, as [`schedule`](crate::schedule) has it, and every picture is
-//! verified.
+//! All strategies are measured in interleaved rounds, as [`schedule`](crate::schedule) has it, and
+//! every picture is verified.
 
 mod curve;
 
@@ -82,11 +82,12 @@ pub struct Figures {
     pub dispatch_one: Option<Interval>,
     /// For each piece, on all threads, as the clock on the wall has it.
     pub dispatch_all: Option<Interval>,
-    /// The smallest task of which half of the largest efficiency is left, after Slaughter et al., "Task Bench", 2020:
-    /// how long its work takes. `None` if the smallest that was tried, of one step, is not too small.
+    /// The smallest task of which half of the largest efficiency is left, after Slaughter et al.,
+    /// "Task Bench", 2020: how long its work takes. `None` if the smallest that was tried, of one
+    /// step, is not too small.
     pub metg: Option<f64>,
-    /// The side of the smallest square picture from which on it is faster than the reference, in pixels; `None` if it
-    /// never is, up to [`LARGEST_SIDE`].
+    /// The side of the smallest square picture from which on it is faster than the reference, in
+    /// pixels; `None` if it never is, up to [`LARGEST_SIDE`].
     pub break_even: Option<f64>,
     /// To prepare it.
     pub prepare: Interval,
@@ -116,7 +117,8 @@ pub enum OverheadError {
 }
 
 impl Study {
-    /// Whether every picture of synthetic work was right. A strategy that is not available draws none.
+    /// Whether every picture of synthetic work was right. A strategy that is not available draws
+    /// none.
     #[must_use]
     pub fn holds(&self) -> bool {
         self.rows.iter().all(|row| !matches!(row.figures, Err(Failure::Rendering(_))))
@@ -134,7 +136,8 @@ impl Overhead<'_> {
         let mut sheets = Sheets::new(self.reference).map_err(OverheadError::Reference)?;
         let strategies: Vec<&dyn Strategy> =
             std::iter::once(self.reference).chain(self.strategies.iter().copied()).collect();
-        let mut samples: Vec<Result<Samples, Failure>> = vec![Ok(Samples::default()); strategies.len()];
+        let mut samples: Vec<Result<Samples, Failure>> =
+            vec![Ok(Samples::default()); strategies.len()];
         let mut schedule = self.protocol.schedule(strategies.len());
         while let Some(turn) = schedule.next(begin.elapsed()) {
             let strategy = strategies[turn.entry];
@@ -154,12 +157,14 @@ impl Overhead<'_> {
         }
         let mut samples = samples.into_iter();
         let reference = samples.next().unwrap_or_else(|| Ok(Samples::default()));
-        let reference = reference.map_err(|failure| OverheadError::Reference(failure.to_string()))?;
+        let reference =
+            reference.map_err(|failure| OverheadError::Reference(failure.to_string()))?;
         let rows = samples.zip(self.strategies).map(|(samples, &strategy)| Row {
             strategy: strategy.name(),
             piece: strategy.rule().piece,
             threads: self.threads_of(strategy).get(),
-            figures: samples.map(|samples| self.figures(strategy, &samples, &reference, sheets.step_ns)),
+            figures: samples
+                .map(|samples| self.figures(strategy, &samples, &reference, sheets.step_ns)),
         });
         Ok(Study { rows: rows.collect(), step_ns: sheets.step_ns, rounds: schedule.rounds() })
     }
@@ -173,7 +178,10 @@ impl Overhead<'_> {
         let threads = self.threads_of(strategy);
         let failed = |error| Failure::Rendering(format!("{}: {error}", strategy.name()));
         let times = |sheets: &mut [Sheet], renderer: &mut dyn Renderer| {
-            sheets.iter_mut().map(|sheet| sheet.time(renderer).map_err(failed)).collect::<Result<Vec<_>, _>>()
+            sheets
+                .iter_mut()
+                .map(|sheet| sheet.time(renderer).map_err(failed))
+                .collect::<Result<Vec<_>, _>>()
         };
         let mut one = of_pixels(strategy, NonZeroUsize::MIN).map_err(Failure::Preparing)?;
         let dispatch_one = Columns::slope(sheets.columns.time(&mut *one).map_err(failed)?);
@@ -183,8 +191,8 @@ impl Overhead<'_> {
         // Their threads would be there already: OpenMP keeps one pool for each calling thread.
         drop((one, renderer));
         let begin = Instant::now();
-        let mut renderer =
-            attempt(|| strategy.prepare(Plan { threads, tile: TILE })).map_err(Failure::Preparing)?;
+        let mut renderer = attempt(|| strategy.prepare(Plan { threads, tile: TILE }))
+            .map_err(Failure::Preparing)?;
         let prepare = begin.elapsed().as_nanos() as f64;
         // The second time is neither the first nor later.
         let uses = (0..3).map(|_| sheets.first.time(&mut *renderer).map_err(failed));
@@ -301,7 +309,10 @@ impl Sheets {
 }
 
 /// Prepared with tiles of one pixel.
-pub(crate) fn of_pixels(strategy: &dyn Strategy, threads: NonZeroUsize) -> Result<Box<dyn Renderer>, String> {
+pub(crate) fn of_pixels(
+    strategy: &dyn Strategy,
+    threads: NonZeroUsize,
+) -> Result<Box<dyn Renderer>, String> {
     attempt(|| strategy.prepare(Plan { threads, tile: NonZeroU32::MIN }))
 }
 

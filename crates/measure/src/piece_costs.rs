@@ -2,14 +2,15 @@
 
 use crate::statistics::lower_quartile;
 use rayweave_contract::{
-    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart, Tile, Work,
-    render_tile,
+    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart,
+    Tile, Work, render_tile,
 };
 use std::num::NonZeroU32;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
-/// Pixels that share a reading of the clock, which takes as long as a cheap pixel, and what it reads.
+/// Pixels that share a reading of the clock, which takes as long as a cheap pixel, and what it
+/// reads.
 const RUN: usize = 16;
 
 /// What a picture is cut into.
@@ -55,8 +56,8 @@ impl Cut {
     }
 }
 
-/// No way to spread work: the caller's thread draws one piece after the other, and takes note of what each costs. As
-/// an entry of a comparison it is timed in the same rounds as all others.
+/// No way to spread work: the caller's thread draws one piece after the other, and takes note of
+/// what each costs. As an entry of a comparison it is timed in the same rounds as all others.
 #[derive(Debug)]
 pub struct OneByOne {
     cut: Cut,
@@ -68,7 +69,8 @@ pub struct OneByOne {
 struct Log {
     /// Of a rendering.
     pieces: usize,
-    /// Of each rendering the nanoseconds of every [run](Cut::run) of pieces, the last of which may be shorter.
+    /// Of each rendering the nanoseconds of every [run](Cut::run) of pieces, the last of which may
+    /// be shorter.
     passes: Vec<Vec<f64>>,
 }
 
@@ -79,9 +81,9 @@ impl OneByOne {
         Self { cut, log: Arc::default() }
     }
 
-    /// Nanoseconds of every piece: among themselves as in the lower quartile of all renderings, the warm-up's too, and
-    /// together `total`. A short piece finds a moment without disturbance sooner than a long one, and would seem
-    /// cheaper beside other kinds than it is.
+    /// Nanoseconds of every piece: among themselves as in the lower quartile of all renderings, the
+    /// warm-up's too, and together `total`. A short piece finds a moment without disturbance sooner
+    /// than a long one, and would seem cheaper beside other kinds than it is.
     #[must_use]
     pub fn costs(&self, total: f64) -> Vec<f64> {
         let log = self.log.lock().unwrap_or_else(PoisonError::into_inner);
@@ -167,14 +169,16 @@ fn pixels(work: &dyn Work, image: &mut Image) -> Result<Vec<f64>, StrategyError>
 /// See [`OneByOne::costs`]; here of runs.
 fn scaled(passes: &[Vec<f64>], total: f64) -> Vec<f64> {
     let runs = passes.first().map_or(0, Vec::len);
-    let quartile = |run: usize| lower_quartile(&passes.iter().map(|pass| pass[run]).collect::<Vec<_>>());
+    let quartile =
+        |run: usize| lower_quartile(&passes.iter().map(|pass| pass[run]).collect::<Vec<_>>());
     let quartiles: Vec<f64> = (0..runs).filter_map(quartile).collect();
     let sum: f64 = quartiles.iter().sum();
     let factor = if sum > 0.0 { total / sum } else { 1.0 };
     quartiles.into_iter().map(|cost| cost * factor).collect()
 }
 
-/// Each of `pieces` pieces has an even share of its run's cost; a run has `length` of them, or what is left.
+/// Each of `pieces` pieces has an even share of its run's cost; a run has `length` of them, or what
+/// is left.
 fn spread(runs: &[f64], length: usize, pieces: usize) -> Vec<f64> {
     let mut costs = Vec::with_capacity(pieces);
     for run in runs {
@@ -184,7 +188,8 @@ fn spread(runs: &[f64], length: usize, pieces: usize) -> Vec<f64> {
     costs
 }
 
-/// Nanoseconds of every piece, by the kind of piece, in the order of their numbers; of kinds not measured none.
+/// Nanoseconds of every piece, by the kind of piece, in the order of their numbers; of kinds not
+/// measured none.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PieceCosts {
     pixels: Vec<f64>,
@@ -224,8 +229,9 @@ impl PieceCosts {
 
     /// What each piece costs where `threads` threads compute, in nanoseconds.
     ///
-    /// A band's cost is put together: as its rows at once are cheaper than one by one, each row costs a share of
-    /// itself, and the band's first row the rest too; the share is the one that is right for the whole picture.
+    /// A band's cost is put together: as its rows at once are cheaper than one by one, each row
+    /// costs a share of itself, and the band's first row the rest too; the share is the one that is
+    /// right for the whole picture.
     #[must_use]
     pub fn of(&self, piece: Piece, threads: usize) -> Vec<f64> {
         match piece {
@@ -235,7 +241,11 @@ impl PieceCosts {
             Piece::Band => {
                 let first = self.rows.first().copied().unwrap_or(0.0);
                 let others = self.rows.iter().sum::<f64>() - first;
-                let share = if others > 0.0 { ((self.whole - first) / others).clamp(0.0, 1.0) } else { 1.0 };
+                let share = if others > 0.0 {
+                    ((self.whole - first) / others).clamp(0.0, 1.0)
+                } else {
+                    1.0
+                };
                 let begin = |thread: usize| self.rows.len() * thread / threads;
                 (0..threads)
                     .map(|thread| match &self.rows[begin(thread)..begin(thread + 1)] {
@@ -271,8 +281,9 @@ mod tests {
     fn every_piece_has_a_cost() {
         let cuts = [Cut::Pixels, Cut::Rows, Cut::Tiles, Cut::Whole].map(drawn);
         assert_eq!(cuts.each_ref().map(|cut| cut.costs(1.0).len()), [35, 5, 2 * 2, 1]);
-        let remembered =
-            |cut: &OneByOne| cut.log.lock().expect("no panic").passes.iter().map(Vec::len).sum::<usize>();
+        let remembered = |cut: &OneByOne| {
+            cut.log.lock().expect("no panic").passes.iter().map(Vec::len).sum::<usize>()
+        };
         assert_eq!(cuts.each_ref().map(remembered), [3, 5, 2 * 2, 1].map(|runs| 2 * runs));
         for cut in cuts {
             let sum: f64 = cut.costs(1e6).iter().sum();
@@ -290,7 +301,10 @@ mod tests {
     #[test]
     fn only_what_is_asked_for_is_cut() {
         assert_eq!(Cut::for_pieces(&[Piece::Tile, Piece::Tile]), [Cut::Tiles]);
-        assert_eq!(Cut::for_pieces(&[Piece::Band, Piece::Pixel]), [Cut::Pixels, Cut::Rows, Cut::Whole]);
+        assert_eq!(
+            Cut::for_pieces(&[Piece::Band, Piece::Pixel]),
+            [Cut::Pixels, Cut::Rows, Cut::Whole]
+        );
         assert_eq!(Cut::for_pieces(&[Piece::Row]), [Cut::Rows]);
     }
 

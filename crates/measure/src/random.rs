@@ -27,7 +27,8 @@ impl SplitMix64 {
         (self.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// A number in `0..bound`; 0 for a bound of 0. Its bias, under `bound` / 2^64, is far below notice.
+    /// A number in `0..bound`; 0 for a bound of 0. Its bias, under `bound` / 2^64, is far below
+    /// notice.
     pub fn below(&mut self, bound: usize) -> usize {
         ((u128::from(self.next_u64()) * bound as u128) >> 64) as usize
     }

@@ -99,7 +99,8 @@ impl Record {
     pub fn times_computed(&self, width: u32, height: u32) -> Vec<u32> {
         let mut times = vec![0; width as usize * height as usize];
         for (tile, _) in &self.log.computations {
-            let columns = tile.x.min(width) as usize..tile.x.saturating_add(tile.width).min(width) as usize;
+            let columns =
+                tile.x.min(width) as usize..tile.x.saturating_add(tile.width).min(width) as usize;
             for y in tile.y..tile.y.saturating_add(tile.height).min(height) {
                 let row = &mut times[y as usize * width as usize..][..width as usize];
                 row[columns.clone()].iter_mut().for_each(|count| *count += 1);
@@ -116,8 +117,8 @@ impl Record {
 /// What a tile costs, by its area; `None` if that does not tell.
 pub type Cost<'a> = dyn Fn(Area) -> Option<u64> + Sync + 'a;
 
-/// Adds up what the tiles cost that the work inside completes: of any number of tiles a single sum. An addition for
-/// each tile is little, but more than nothing: not for timed runs.
+/// Adds up what the tiles cost that the work inside completes: of any number of tiles a single sum.
+/// An addition for each tile is little, but more than nothing: not for timed runs.
 pub struct Tally<'a> {
     work: &'a dyn Work,
     cost: &'a Cost<'a>,
@@ -200,7 +201,8 @@ mod tests {
         let record = recorder.finish();
 
         assert_eq!(record.threads(), 2);
-        let order: Vec<_> = record.of_pixel(1, 0).iter().map(|c| (c.tile.x, c.thread.index)).collect();
+        let order: Vec<_> =
+            record.of_pixel(1, 0).iter().map(|c| (c.tile.x, c.thread.index)).collect();
         assert_eq!(order, [(0, 0), (1, 1)]);
         assert_eq!(record.of_pixel(2, 1)[0].thread.index, 0);
         // The row at (2, 1) reaches beyond a picture of 3 x 2.
@@ -213,7 +215,8 @@ mod tests {
     /// Catches a tile that is not counted, or counted by something other than its own area.
     #[test]
     fn costs_of_all_threads_add_up() {
-        let cost = |area: Area| (area.x < 4).then(|| u64::from(100 * area.x + 10 * area.y + area.width));
+        let cost =
+            |area: Area| (area.x < 4).then(|| u64::from(100 * area.x + 10 * area.y + area.width));
         let tally = Tally::new(&Black, &cost);
         tally.render(&mut Tile::pixel(3, 2, &mut [1.0; 3]));
         thread::scope(|scope| {

@@ -1,6 +1,6 @@
-//! What is measured when: interleaved rounds, in each of which every entry has one turn, in an order
-//! shuffled by a seeded generator. What drifts (heat, clock rate, neighbours) meets all of them, and
-//! none is always after the same other.
+//! What is measured when: interleaved rounds, in each of which every entry has one turn, in an
+//! order shuffled by a seeded generator. What drifts (heat, clock rate, neighbours) meets all of
+//! them, and none is always after the same other.
 
 use crate::random::SplitMix64;
 use std::time::Duration;
@@ -12,21 +12,27 @@ pub struct Protocol {
     pub min_rounds: usize,
     /// Rounds to end after.
     pub max_rounds: usize,
-    /// No round is begun, after the least number of them, that would go beyond this. What comes before
-    /// the first turn and the warm-up count too.
+    /// No round is begun, after the least number of them, that would go beyond this. What comes
+    /// before the first turn and the warm-up count too.
     pub budget: Duration,
-    /// The half of an interval, as a share of the median speed-up, that is narrow enough: once every row is as
-    /// precise no round is begun after the least number.
+    /// The half of an interval, as a share of the median speed-up, that is narrow enough: once
+    /// every row is as precise no round is begun after the least number.
     pub goal: Option<f64>,
     /// Of the order within the rounds.
     pub seed: u64,
 }
 
 impl Default for Protocol {
-    /// 8 to 40 rounds in two and a half minutes: of fewer than 6 there is no 95 % interval, and a narrow one by
-    /// chance ends no measurement.
+    /// 8 to 40 rounds in two and a half minutes: of fewer than 6 there is no 95 % interval, and a
+    /// narrow one by chance ends no measurement.
     fn default() -> Self {
-        Self { min_rounds: 8, max_rounds: 40, budget: Duration::from_secs(150), goal: None, seed: 1 }
+        Self {
+            min_rounds: 8,
+            max_rounds: 40,
+            budget: Duration::from_secs(150),
+            goal: None,
+            seed: 1,
+        }
     }
 }
 
@@ -37,7 +43,8 @@ impl Protocol {
         limit.map_or(self, |budget| Self { max_rounds: usize::MAX, budget, ..self })
     }
 
-    /// The turns of `entries` entries: one warm-up round in the order of the entries, then the rounds.
+    /// The turns of `entries` entries: one warm-up round in the order of the entries, then the
+    /// rounds.
     #[must_use]
     pub fn schedule(&self, entries: usize) -> Schedule {
         Schedule {

@@ -1,7 +1,8 @@
-//! Pictures of synthetic work to time renderers with. Every picture is verified, outside of the time.
+//! Pictures of synthetic work to time renderers with. Every picture is verified, outside of the
+//! time.
 //!
-//! The cost of dispatch is measured on columns of pixels, with tiles of one pixel: there a pixel, a row and a tile are
-//! the same, and the work of a piece can be next to nothing.
+//! The cost of dispatch is measured on columns of pixels, with tiles of one pixel: there a pixel, a
+//! row and a tile are the same, and the work of a piece can be next to nothing.
 
 use crate::attempt::attempt;
 use crate::poison;
@@ -72,12 +73,14 @@ impl Columns {
 
     /// Nanoseconds that `renderer` takes for the short one and for the long one.
     pub(crate) fn time(&mut self, renderer: &mut dyn Renderer) -> Result<[f64; 2], String> {
-        // Not counted: a list of so many tiles takes memory, and the first to have it would pay for it.
+        // Not counted: a list of so many tiles takes memory, and the first to have it would pay for
+        // it.
         self.long.time(renderer)?;
         Ok([self.short.time(renderer)?, self.long.time(renderer)?])
     }
 
-    /// Nanoseconds a piece of next to no work, of the times of both: what is paid once for a rendering cancels.
+    /// Nanoseconds a piece of next to no work, of the times of both: what is paid once for a
+    /// rendering cancels.
     pub(crate) fn slope([short, long]: [f64; 2]) -> f64 {
         (long - short) / f64::from(LONG - SHORT)
     }

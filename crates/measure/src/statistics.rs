@@ -1,7 +1,7 @@
 //! What a sample of times says: median, its uncertainty, and what threads made of it.
 //!
-//! Intervals are by the bootstrap, as METHODOLOGY.md justifies: resamples of the sample, drawn with a fixed seed, and
-//! between which of their medians all but a few lie.
+//! Intervals are by the bootstrap, as METHODOLOGY.md justifies: resamples of the sample, drawn with
+//! a fixed seed, and between which of their medians all but a few lie.
 
 use crate::random::SplitMix64;
 use std::f64::consts::SQRT_2;
@@ -43,8 +43,8 @@ pub fn median(sample: &[f64]) -> Option<f64> {
     median_in_place(&mut sample.to_vec())
 }
 
-/// The lower quartile of `sample`, of up to four values the smallest; `None` when there is no sample. For times of which
-/// the machine's own share is wanted: what disturbs only adds to them.
+/// The lower quartile of `sample`, of up to four values the smallest; `None` when there is no
+/// sample. For times of which the machine's own share is wanted: what disturbs only adds to them.
 #[must_use]
 pub fn lower_quartile(sample: &[f64]) -> Option<f64> {
     let mut sorted = sample.to_vec();
@@ -55,16 +55,18 @@ pub fn lower_quartile(sample: &[f64]) -> Option<f64> {
 /// Values that an interval needs at least.
 pub const LEAST_VALUES: usize = 6;
 
-/// The median of `sample` with its 95 % interval, an expanded percentile interval of the bootstrap: that of the
-/// plain percentiles is too narrow for few values. `None` when there is no sample.
+/// The median of `sample` with its 95 % interval, an expanded percentile interval of the bootstrap:
+/// that of the plain percentiles is too narrow for few values. `None` when there is no sample.
 ///
-/// Of fewer than [`LEAST_VALUES`] no interval covers 95 %; it is then the smallest and the largest value, or nearly.
+/// Of fewer than [`LEAST_VALUES`] no interval covers 95 %; it is then the smallest and the largest
+/// value, or nearly.
 ///
-/// It wants independent values, so ratios within a round, not times: what slows a whole round down cancels in the
-/// ratio.
+/// It wants independent values, so ratios within a round, not times: what slows a whole round down
+/// cancels in the ratio.
 ///
-/// Source: Efron, "Bootstrap methods: another look at the jackknife", 1979; expanded after Hesterberg, "What teachers
-/// should know about the bootstrap", The American Statistician 69 (4), 2015.
+/// Source: Efron, "Bootstrap methods: another look at the jackknife", 1979; expanded after
+/// Hesterberg, "What teachers should know about the bootstrap", The American Statistician 69 (4),
+/// 2015.
 #[must_use]
 pub fn median_interval(sample: &[f64]) -> Option<Interval> {
     let median = median(sample)?;
@@ -72,8 +74,8 @@ pub fn median_interval(sample: &[f64]) -> Option<Interval> {
     Some(interval(median, sample.len(), || resampled_median(sample, &mut random)))
 }
 
-/// The median of `above` over that of `below`, where nothing pairs their values, with its interval as
-/// [`median_interval`] has it; `None` if either is empty.
+/// The median of `above` over that of `below`, where nothing pairs their values, with its interval
+/// as [`median_interval`] has it; `None` if either is empty.
 #[must_use]
 pub fn median_ratio_interval(above: &[f64], below: &[f64]) -> Option<Interval> {
     let ratio = median(above)? / median(below)?;
@@ -84,8 +86,8 @@ pub fn median_ratio_interval(above: &[f64], below: &[f64]) -> Option<Interval> {
     Some(interval(ratio, values, resampled))
 }
 
-/// The median of `above` over `below`, measured in the same rounds, with its interval; `None` without a
-/// round.
+/// The median of `above` over `below`, measured in the same rounds, with its interval; `None`
+/// without a round.
 #[must_use]
 pub fn ratio_interval(above: &[u64], below: &[u64]) -> Option<Interval> {
     median_interval(&ratios(above, below))
@@ -106,15 +108,17 @@ fn interval(estimate: f64, values: usize, mut resampled: impl FnMut() -> f64) ->
     Interval { median: estimate, low: estimates[outside], high: estimates[RESAMPLES - 1 - outside] }
 }
 
-/// What share of the resamples lies outside of the interval at each end, 2.5 % of many values: as far out in the
-/// normal distribution as Student's with its wider tails, times the root of n / (n - 1), has its 2.5 %.
+/// What share of the resamples lies outside of the interval at each end, 2.5 % of many values: as
+/// far out in the normal distribution as Student's with its wider tails, times the root of n / (n -
+/// 1), has its 2.5 %.
 fn tail(values: usize) -> f64 {
     let freedom = values.saturating_sub(1).max(1) as f64;
     let far = student(freedom) * (1.0 + 1.0 / freedom).sqrt();
     libm::erfc(far / SQRT_2) / 2.0
 }
 
-/// Above which Student's distribution has 2.5 %; off by less than 0.01 from 5 degrees of freedom on.
+/// Above which Student's distribution has 2.5 %; off by less than 0.01 from 5 degrees of freedom
+/// on.
 ///
 /// Source: Abramowitz and Stegun, "Handbook of Mathematical Functions", 26.7.5.
 fn student(freedom: f64) -> f64 {
@@ -129,7 +133,8 @@ fn student(freedom: f64) -> f64 {
 
 /// The median of as many values as there are in `sample`, each any of them.
 fn resampled_median(sample: &[f64], random: &mut SplitMix64) -> f64 {
-    let mut resample: Vec<f64> = sample.iter().map(|_| sample[random.below(sample.len())]).collect();
+    let mut resample: Vec<f64> =
+        sample.iter().map(|_| sample[random.below(sample.len())]).collect();
     median_in_place(&mut resample).unwrap_or(f64::NAN)
 }
 
@@ -183,7 +188,9 @@ mod tests {
     /// The tables of textbooks, and that few values do not have 2.5 % of the resamples outside.
     #[test]
     fn tails_are_expanded_by_student() {
-        for (freedom, expected) in [(5.0, 2.571), (7.0, 2.365), (9.0, 2.262), (19.0, 2.093), (39.0, 2.023)] {
+        for (freedom, expected) in
+            [(5.0, 2.571), (7.0, 2.365), (9.0, 2.262), (19.0, 2.093), (39.0, 2.023)]
+        {
             assert!((student(freedom) - expected).abs() < 0.01, "{freedom}: {}", student(freedom));
         }
         // Normal tails beyond 2.571 sqrt(6 / 5), 2.365 sqrt(8 / 7) and 2.023 sqrt(40 / 39).
@@ -193,23 +200,26 @@ mod tests {
         assert!(tail(1) < 1e-9 && (tail(1_000_000) - 0.025).abs() < 1e-6);
     }
 
-    /// Time of a rendering that usually takes 1, give or take 1 %, and one time in seven is disturbed: 15 %
-    /// longer on average, and sometimes much longer.
+    /// Time of a rendering that usually takes 1, give or take 1 %, and one time in seven is
+    /// disturbed: 15 % longer on average, and sometimes much longer.
     fn noisy(random: &mut SplitMix64) -> f64 {
         let normal: f64 = (0..12).map(|_| random.fraction()).sum::<f64>() - 6.0;
-        let disturbed = if random.below(7) == 0 { -0.15 * (1.0 - random.fraction()).ln() } else { 0.0 };
+        let disturbed =
+            if random.below(7) == 0 { -0.15 * (1.0 - random.fraction()).ln() } else { 0.0 };
         (0.01 * normal).exp() + disturbed
     }
 
-    /// Catches percentiles that are not expanded, which cover 92 % of the time at 8 values, and an interval that
-    /// is wide for safety's sake. 1000 trials: three standard deviations of a coverage of 95 % are 2.1 %.
+    /// Catches percentiles that are not expanded, which cover 92 % of the time at 8 values, and an
+    /// interval that is wide for safety's sake. 1000 trials: three standard deviations of a
+    /// coverage of 95 % are 2.1 %.
     #[test]
     fn intervals_cover_what_they_promise() {
         for (values, widest) in [(8, 0.15), (12, 0.045), (20, 0.03), (40, 0.02)] {
             let mut random = SplitMix64::new(values as u64);
             let (mut covered, mut widths) = (0, Vec::new());
             for _ in 0..1000 {
-                let ratios: Vec<f64> = (0..values).map(|_| noisy(&mut random) / noisy(&mut random)).collect();
+                let ratios: Vec<f64> =
+                    (0..values).map(|_| noisy(&mut random) / noisy(&mut random)).collect();
                 let interval = median_interval(&ratios).expect("values");
                 covered += usize::from(interval.contains(1.0));
                 widths.push(interval.high - interval.low);

@@ -23,18 +23,30 @@ pub struct Stopwatch<'a> {
 }
 
 impl<'a> Stopwatch<'a> {
-    /// Will render `work` into a picture of `width` x `height` pixels by tiles of `tile` pixels a side.
+    /// Will render `work` into a picture of `width` x `height` pixels by tiles of `tile` pixels a
+    /// side.
     ///
     /// # Errors
     ///
     /// There is no such picture.
-    pub fn new(work: &'a dyn Work, width: u32, height: u32, tile: NonZeroU32) -> Result<Self, ImageError> {
-        Ok(Self { work, tile, image: Image::new(width, height)?, begin: Instant::now(), rays: None })
+    pub fn new(
+        work: &'a dyn Work,
+        width: u32,
+        height: u32,
+        tile: NonZeroU32,
+    ) -> Result<Self, ImageError> {
+        Ok(Self {
+            work,
+            tile,
+            image: Image::new(width, height)?,
+            begin: Instant::now(),
+            rays: None,
+        })
     }
 
-    /// Counts the primary rays of the warm-up, by those of each tile that a strategy cuts; the timed renderings stay
-    /// as they are. Of the whole picture as one tile `rays` tells how many are needed. Nothing is counted if it does
-    /// not know of one of these.
+    /// Counts the primary rays of the warm-up, by those of each tile that a strategy cuts; the
+    /// timed renderings stay as they are. Of the whole picture as one tile `rays` tells how many
+    /// are needed. Nothing is counted if it does not know of one of these.
     #[must_use]
     pub fn counting(self, rays: &'a Cost<'a>) -> Self {
         Self { rays: Some(rays), ..self }
@@ -61,8 +73,9 @@ impl<'a> Stopwatch<'a> {
         Ok(Rendering { sample, digest: self.image.digest(), first_digest: None })
     }
 
-    /// Prepares `entry` and renders twice with it: once to find out what a single picture takes, once as it is when
-    /// everything is warm. A fresh process has to call it, once, or the first is no [one shot](Sample::one_shot_ns).
+    /// Prepares `entry` and renders twice with it: once to find out what a single picture takes,
+    /// once as it is when everything is warm. A fresh process has to call it, once, or the first is
+    /// no [one shot](Sample::one_shot_ns).
     ///
     /// # Errors
     ///
@@ -99,10 +112,11 @@ impl Executor for Stopwatch<'_> {
         let Some(rays) = self.rays else { return Ok((self.render(entry)?, None)) };
         let tally = Tally::new(self.work, rays);
         let rendering = self.render_work(&tally, entry)?;
-        let needed = rays(Area { x: 0, y: 0, width: self.image.width(), height: self.image.height() });
+        let needed =
+            rays(Area { x: 0, y: 0, width: self.image.width(), height: self.image.height() });
         let counted = tally.finish().zip(needed);
-        let rays =
-            counted.map(|(primary, needed)| Rays { primary, redundant: primary.saturating_sub(needed) });
+        let rays = counted
+            .map(|(primary, needed)| Rays { primary, redundant: primary.saturating_sub(needed) });
         Ok((rendering, rays))
     }
 
@@ -157,21 +171,33 @@ mod tests {
         }
 
         fn rule(&self) -> Rule {
-            Rule { piece: Piece::Tile, dealing: Dealing::Shared { chunk: 1 }, delivery: Delivery::InPlace }
+            Rule {
+                piece: Piece::Tile,
+                dealing: Dealing::Shared { chunk: 1 },
+                delivery: Delivery::InPlace,
+            }
         }
 
         fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
             let source = std::io::Error::other("tired");
             match self.prepared.fetch_add(1, Ordering::Relaxed) {
                 earlier @ 0..2 => Ok(Box::new(Renders(earlier == 0))),
-                _ => Err(StrategyError::Spawn { strategy: "tires", threads: plan.threads.get(), source }),
+                _ => Err(StrategyError::Spawn {
+                    strategy: "tires",
+                    threads: plan.threads.get(),
+                    source,
+                }),
             }
         }
     }
 
     impl Renderer for Renders {
         fn render(&mut self, work: &dyn Work, image: &mut Image) -> Result<(), StrategyError> {
-            image.tiles(NonZeroU32::MIN).iter_mut().filter(|_| self.0).for_each(|tile| work.render(tile));
+            image
+                .tiles(NonZeroU32::MIN)
+                .iter_mut()
+                .filter(|_| self.0)
+                .for_each(|tile| work.render(tile));
             Ok(())
         }
     }
@@ -193,7 +219,11 @@ mod tests {
         }
 
         fn rule(&self) -> Rule {
-            Rule { piece: Piece::Tile, dealing: Dealing::Shared { chunk: 1 }, delivery: Delivery::InPlace }
+            Rule {
+                piece: Piece::Tile,
+                dealing: Dealing::Shared { chunk: 1 },
+                delivery: Delivery::InPlace,
+            }
         }
 
         fn prepare(&self, _: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
@@ -209,8 +239,8 @@ mod tests {
         }
     }
 
-    /// Catches a count by the plan's tiles instead of those that were cut, one in the timed renderings, and a
-    /// need other than the whole picture's.
+    /// Catches a count by the plan's tiles instead of those that were cut, one in the timed
+    /// renderings, and a need other than the whole picture's.
     #[test]
     fn the_warm_up_counts_the_tiles_that_were_cut() {
         let asked = AtomicUsize::new(0);
@@ -233,7 +263,8 @@ mod tests {
         assert_eq!(stopwatch.warm_up(&entry).map(|(_, counted)| counted), Ok(None));
     }
 
-    /// Catches a first picture that passes for the second, and spans that are taken at the wrong places.
+    /// Catches a first picture that passes for the second, and spans that are taken at the wrong
+    /// places.
     #[test]
     fn a_one_shot_is_prepared_and_rendered_and_then_rendered_again() {
         let entry = Entry { strategy: &ByTwos, threads: NonZeroUsize::MIN };
@@ -246,7 +277,8 @@ mod tests {
 
         let tires = Tires::default();
         let entry = Entry { strategy: &tires, threads: NonZeroUsize::MIN };
-        let Rendering { digest, first_digest, .. } = stopwatch.one_shot_and_again(&entry).expect("rendered");
+        let Rendering { digest, first_digest, .. } =
+            stopwatch.one_shot_and_again(&entry).expect("rendered");
         assert_eq!((first_digest, tires.prepared.load(Ordering::Relaxed)), (Some(digest), 1));
         let Rendering { digest: again, first_digest, .. } =
             stopwatch.one_shot_and_again(&entry).expect("nothing");

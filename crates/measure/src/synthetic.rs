@@ -2,8 +2,8 @@
 
 use rayweave_contract::{Rgb, Tile, Work};
 
-/// A busy loop of so many steps at each pixel `(x, y)`, as the function says. A pixel's colour follows from its place
-/// and its steps alone, so that a picture can be verified.
+/// A busy loop of so many steps at each pixel `(x, y)`, as the function says. A pixel's colour
+/// follows from its place and its steps alone, so that a picture can be verified.
 #[derive(Clone, Copy, Debug)]
 pub struct Synthetic<Steps>(pub Steps);
 
@@ -31,7 +31,8 @@ fn color(x: u32, y: u32, steps: u32) -> Rgb {
     [0, 21, 42].map(|shift| (state >> shift & 0x1f_ffff) as f32 / 0x20_0000 as f32)
 }
 
-/// Each step needs the one before it, and no compiler knows a shorter way: Marsaglia, "Xorshift RNGs", 2003.
+/// Each step needs the one before it, and no compiler knows a shorter way: Marsaglia, "Xorshift
+/// RNGs", 2003.
 fn step(mut state: u64) -> u64 {
     state ^= state << 13;
     state ^= state >> 7;
@@ -49,7 +50,10 @@ mod tests {
     fn a_color_follows_from_place_and_steps() {
         let draw = |work: &dyn Work, tile| {
             let mut image = Image::new(5, 3).expect("a picture");
-            image.tiles(NonZeroU32::new(tile).expect("not 0")).iter_mut().for_each(|tile| work.render(tile));
+            image
+                .tiles(NonZeroU32::new(tile).expect("not 0"))
+                .iter_mut()
+                .for_each(|tile| work.render(tile));
             image
         };
         let picture = draw(&even(3), 2);

@@ -1,7 +1,8 @@
 //! Who computed what, and from when to when: a work around a work.
 //!
-//! Each thread writes to memory of its own, which is there before the rendering begins; nothing is shared on the
-//! way. What remains are two looks at the clock and a few stores, which [`Cost::here`] measures.
+//! Each thread writes to memory of its own, which is there before the rendering begins; nothing is
+//! shared on the way. What remains are two looks at the clock and a few stores, which
+//! [`Cost::here`] measures.
 
 mod cost;
 
@@ -68,7 +69,10 @@ impl Lane {
     /// The pixels of all pieces.
     #[must_use]
     pub fn pixels(&self) -> u64 {
-        self.pieces.iter().map(|piece| u64::from(piece.area.width) * u64::from(piece.area.height)).sum()
+        self.pieces
+            .iter()
+            .map(|piece| u64::from(piece.area.width) * u64::from(piece.area.height))
+            .sum()
     }
 }
 
@@ -80,11 +84,13 @@ impl Piece {
     }
 }
 
-/// Records when the work inside is asked for a tile, when it is done, and by which thread, in one rendering.
+/// Records when the work inside is asked for a tile, when it is done, and by which thread, in one
+/// rendering.
 pub struct TimeRecorder<'a> {
     work: &'a dyn Work,
     origin: Instant,
-    /// Of all recorders of this process: a thread knows by it whether the lane that it remembers is one of these.
+    /// Of all recorders of this process: a thread knows by it whether the lane that it remembers is
+    /// one of these.
     number: u64,
     lanes: Mutex<Lanes>,
 }
@@ -107,13 +113,15 @@ thread_local! {
 }
 
 impl<'a> TimeRecorder<'a> {
-    /// Will record a rendering of `work` on `threads` threads, with room for `pieces` of them on each. More of either
-    /// find place too, but take their time for it.
+    /// Will record a rendering of `work` on `threads` threads, with room for `pieces` of them on
+    /// each. More of either find place too, but take their time for it.
     #[must_use]
     pub fn new(work: &'a dyn Work, threads: usize, pieces: usize) -> Self {
-        let untouched = Piece { area: Area { x: 0, y: 0, width: 0, height: 0 }, begin_ns: 0, end_ns: 0 };
+        let untouched =
+            Piece { area: Area { x: 0, y: 0, width: 0, height: 0 }, begin_ns: 0, end_ns: 0 };
         let room = || {
-            // Written once: the operating system hands out memory at the first touch, which takes time.
+            // Written once: the operating system hands out memory at the first touch, which takes
+            // time.
             let mut pieces = vec![untouched; pieces];
             pieces.clear();
             Arc::new(Mutex::new(pieces))
@@ -122,7 +130,10 @@ impl<'a> TimeRecorder<'a> {
             work,
             origin: Instant::now(),
             number: RECORDERS.fetch_add(1, Ordering::Relaxed),
-            lanes: Mutex::new(Lanes { taken: Vec::new(), free: (0..threads).map(|_| room()).collect() }),
+            lanes: Mutex::new(Lanes {
+                taken: Vec::new(),
+                free: (0..threads).map(|_| room()).collect(),
+            }),
         }
     }
 
@@ -209,7 +220,8 @@ mod tests {
         recorder.render(&mut Tile::row(x, 1, &mut [[1.0; 3]; 2]));
     }
 
-    /// Catches a lane that is not its thread's own, an end before the work's, and times that count from elsewhere.
+    /// Catches a lane that is not its thread's own, an end before the work's, and times that count
+    /// from elsewhere.
     #[test]
     fn each_thread_has_its_pieces_in_order() {
         let recorder = TimeRecorder::new(&Sleep, 1, 1);
@@ -236,22 +248,26 @@ mod tests {
         assert!(all[4].end_ns <= timeline.wall_ns, "{timeline:?}");
     }
 
-    /// Catches a thread that goes on writing to the lane of an earlier recorder, or that gets a second one when it
-    /// comes back to the first.
+    /// Catches a thread that goes on writing to the lane of an earlier recorder, or that gets a
+    /// second one when it comes back to the first.
     #[test]
     fn a_thread_may_compute_for_two_recorders_in_turn() {
         let recorders = [0, 1].map(|_| TimeRecorder::new(&Sleep, 1, 0));
         let begin = Instant::now();
         (0..5).for_each(|x| render(&recorders[x as usize % 2], x));
         let lanes = recorders.map(|recorder| recorder.finish(begin, Instant::now()).lanes);
-        let counts = lanes.map(|lanes| lanes.iter().map(|lane| lane.pieces.len()).collect::<Vec<_>>());
+        let counts =
+            lanes.map(|lanes| lanes.iter().map(|lane| lane.pieces.len()).collect::<Vec<_>>());
         assert_eq!(counts, [[3], [2]]);
     }
 
     #[test]
     fn times_of_a_lane() {
-        let piece =
-            |begin_ns, end_ns| Piece { area: Area { x: 0, y: 0, width: 3, height: 2 }, begin_ns, end_ns };
+        let piece = |begin_ns, end_ns| Piece {
+            area: Area { x: 0, y: 0, width: 3, height: 2 },
+            begin_ns,
+            end_ns,
+        };
         let lane = Lane { name: None, pieces: vec![piece(5, 8), piece(9, 20), piece(24, 25)] };
         assert_eq!((lane.busy_ns(), lane.pixels()), (15, 18));
         assert_eq!(lane.gaps_ns().collect::<Vec<_>>(), [1, 4]);

@@ -7,7 +7,8 @@ use std::time::Duration;
 pub struct Usage {
     /// Time on a processor, the system's work for it included.
     pub cpu: Duration,
-    /// How often a thread was taken off its processor while it had something to do: somebody else's turn.
+    /// How often a thread was taken off its processor while it had something to do: somebody else's
+    /// turn.
     pub involuntary_switches: u64,
 }
 
@@ -29,7 +30,9 @@ impl Usage {
     pub fn since(self, earlier: Self) -> Self {
         Self {
             cpu: self.cpu.saturating_sub(earlier.cpu),
-            involuntary_switches: self.involuntary_switches.saturating_sub(earlier.involuntary_switches),
+            involuntary_switches: self
+                .involuntary_switches
+                .saturating_sub(earlier.involuntary_switches),
         }
     }
 

@@ -44,7 +44,8 @@ pub(crate) struct Part {
 
 impl Dealer {
     pub(crate) fn new(dealing: Dealing, threads: usize, pieces: usize) -> Self {
-        let shares = || (0..threads).map(|i| pieces * i / threads..pieces * (i + 1) / threads).collect();
+        let shares =
+            || (0..threads).map(|i| pieces * i / threads..pieces * (i + 1) / threads).collect();
         match dealing {
             Dealing::Equal => Self::Equal(shares()),
             Dealing::Shared { chunk } => Self::Shared { left: 0..pieces, chunk: chunk.max(1) },
@@ -93,8 +94,8 @@ fn steal(shares: &mut [Range<usize>], thread: usize) -> (Range<usize>, Source) {
     (take_front(&mut shares[thread], 1), source)
 }
 
-/// As rayon does: the thread's latest part, or the oldest of the next thread that has one, halved as long as it may
-/// be; the halves at the right are there for others.
+/// As rayon does: the thread's latest part, or the oldest of the next thread that has one, halved
+/// as long as it may be; the halves at the right are there for others.
 fn halve(queues: &mut [VecDeque<Part>], thread: usize) -> Option<(Range<usize>, Source)> {
     let threads = queues.len();
     let (mut part, source) = match queues[thread].pop_back() {
@@ -102,7 +103,8 @@ fn halve(queues: &mut [VecDeque<Part>], thread: usize) -> Option<(Range<usize>, 
         None => {
             let others = (1..threads).map(|distance| (thread + distance) % threads);
             let mut part = others.filter_map(|other| queues[other].pop_front()).next()?;
-            // Somebody is idle, so smaller parts are wanted again; one more, for the halving that follows.
+            // Somebody is idle, so smaller parts are wanted again; one more, for the halving that
+            // follows.
             part.splits = 2 * threads.max(part.splits / 2);
             (part, Source::Stolen)
         }

@@ -1,15 +1,18 @@
 //! Laws of speed-up, fitted by least squares.
 //!
-//! Gunther's law of scalability gives what `n` threads make of one as `C(n) = n / (1 + s (n - 1) + k n (n - 1))`; with
-//! `k = 0` it is Amdahl's. Sources: Amdahl, "Validity of the single processor approach to achieving large scale
-//! computing capabilities", 1967; Gunther, "A simple capacity model of massively parallel transaction systems", 1993.
+//! Gunther's law of scalability gives what `n` threads make of one as `C(n) = n / (1 + s (n - 1) +
+//! k n (n - 1))`; with `k = 0` it is Amdahl's. Sources: Amdahl, "Validity of the single processor
+//! approach to achieving large scale computing capabilities", 1967; Gunther, "A simple capacity
+//! model of massively parallel transaction systems", 1993.
 
 /// A law with its fitted shares.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Law {
-    /// The share of the work that waits for its turn, Gunther's sigma: 0 to 1. In Amdahl's law the serial share.
+    /// The share of the work that waits for its turn, Gunther's sigma: 0 to 1. In Amdahl's law the
+    /// serial share.
     pub serial: f64,
-    /// What each thread costs each other one, Gunther's kappa, as a share of the work: 0 or more. In Amdahl's law 0.
+    /// What each thread costs each other one, Gunther's kappa, as a share of the work: 0 or more.
+    /// In Amdahl's law 0.
     pub crosstalk: f64,
     /// Root of the mean square of the relative errors, in time, over the points fitted to.
     pub error: f64,
@@ -22,22 +25,25 @@ impl Law {
         threads / (1.0 + self.serial * (threads - 1.0) + self.crosstalk * threads * (threads - 1.0))
     }
 
-    /// The number of threads beyond which more of them are slower; `None` where more are always faster.
+    /// The number of threads beyond which more of them are slower; `None` where more are always
+    /// faster.
     #[must_use]
     pub fn peak(&self) -> Option<f64> {
-        (self.crosstalk > 0.0).then(|| ((1.0 - self.serial).max(0.0) / self.crosstalk).sqrt().max(1.0))
+        (self.crosstalk > 0.0)
+            .then(|| ((1.0 - self.serial).max(0.0) / self.crosstalk).sqrt().max(1.0))
     }
 }
 
-/// Amdahl's law for `points`: numbers of threads, and how many times as fast as one thread they were. `None` without a
-/// point of two threads or more.
+/// Amdahl's law for `points`: numbers of threads, and how many times as fast as one thread they
+/// were. `None` without a point of two threads or more.
 #[must_use]
 pub fn amdahl(points: &[(usize, f64)]) -> Option<Law> {
     let sums = Sums::of(points)?;
     Some(law(points, (sums.bs / sums.ss).clamp(0.0, 1.0), 0.0))
 }
 
-/// Gunther's law for `points`, as [`amdahl`]. `None` without points of two different numbers of threads above one.
+/// Gunther's law for `points`, as [`amdahl`]. `None` without points of two different numbers of
+/// threads above one.
 #[must_use]
 pub fn usl(points: &[(usize, f64)]) -> Option<Law> {
     let Sums { ss, sk, kk, bs, bk } = Sums::of(points)?;
@@ -46,8 +52,10 @@ pub fn usl(points: &[(usize, f64)]) -> Option<Law> {
     if determinant <= 1e-12 * ss * kk {
         return None;
     }
-    let (serial, crosstalk) = ((bs * kk - bk * sk) / determinant, (bk * ss - bs * sk) / determinant);
-    // Where a share comes out beyond its bounds the best one allowed is there, and the other is fitted to the rest.
+    let (serial, crosstalk) =
+        ((bs * kk - bk * sk) / determinant, (bk * ss - bs * sk) / determinant);
+    // Where a share comes out beyond its bounds the best one allowed is there, and the other is
+    // fitted to the rest.
     Some(if crosstalk < 0.0 {
         law(points, (bs / ss).clamp(0.0, 1.0), 0.0)
     } else if (0.0..=1.0).contains(&serial) {
@@ -58,8 +66,8 @@ pub fn usl(points: &[(usize, f64)]) -> Option<Law> {
     })
 }
 
-/// The normal equations. `n / C(n)` is linear in both shares; each equation is divided by what was measured, so that
-/// relative errors count, and one of 2 % at 1024 threads as much as one at 2.
+/// The normal equations. `n / C(n)` is linear in both shares; each equation is divided by what was
+/// measured, so that relative errors count, and one of 2 % at 1024 threads as much as one at 2.
 #[derive(Debug, Default)]
 struct Sums {
     ss: f64,
@@ -109,8 +117,8 @@ mod tests {
     fn the_shares_of_exact_points() {
         let close = |a: f64, b: f64| assert!((a - b).abs() <= 1e-9, "{a} is not {b}");
         let (serial, crosstalk) = (0.03, 0.0002);
-        let law =
-            usl(&points(|n| n / (1.0 + serial * (n - 1.0) + crosstalk * n * (n - 1.0)))).expect("a law");
+        let law = usl(&points(|n| n / (1.0 + serial * (n - 1.0) + crosstalk * n * (n - 1.0))))
+            .expect("a law");
         close(law.serial, serial);
         close(law.crosstalk, crosstalk);
         close(law.error, 0.0);
@@ -122,8 +130,8 @@ mod tests {
         assert_eq!((law.crosstalk, law.peak()), (0.0, None));
     }
 
-    /// Catches shares below 0, which would promise more than `n` times the speed, and work of which more than all is
-    /// serial.
+    /// Catches shares below 0, which would promise more than `n` times the speed, and work of which
+    /// more than all is serial.
     #[test]
     fn shares_are_kept_within_bounds() {
         let faster = points(|n| 1.1 * n);

@@ -1,7 +1,8 @@
 //! A discrete-event simulation of a strategy: the costs of its pieces are replayed under its rule.
 //!
-//! What it leaves out: all threads compute equally fast, each on a core of its own, as does the owner of the
-//! picture that pieces are sent to; whoever waits for a lock gets it in the order of asking; memory has any bandwidth.
+//! What it leaves out: all threads compute equally fast, each on a core of its own, as does the
+//! owner of the picture that pieces are sent to; whoever waits for a lock gets it in the order of
+//! asking; memory has any bandwidth.
 
 use crate::dealer::{Dealer, Source};
 use rayweave_contract::{Delivery, Rule};
@@ -47,8 +48,9 @@ pub struct Run {
     pub computed: Vec<f64>,
 }
 
-/// The rendering of pieces that take `pieces` nanoseconds each, in the order of their numbers, by `threads` threads;
-/// 0 of them are taken for 1. Where a piece is a band there is one for each thread.
+/// The rendering of pieces that take `pieces` nanoseconds each, in the order of their numbers, by
+/// `threads` threads; 0 of them are taken for 1. Where a piece is a band there is one for each
+/// thread.
 ///
 /// Of equal times the lower thread's comes first, so that the same input gives the same result.
 #[must_use]

@@ -1,5 +1,5 @@
-//! Builds a rayon pool of a strategy's own: what every strategy on rayon needs, and no strategy should
-//! have to say twice.
+//! Builds a rayon pool of a strategy's own: what every strategy on rayon needs, and no strategy
+//! should have to say twice.
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use rayweave_contract::StrategyError;

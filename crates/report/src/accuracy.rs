@@ -3,11 +3,21 @@
 use crate::style;
 use rayweave_accuracy::FamilyScore;
 
-const HEADER: [&str; 9] =
-    ["family", "cases", "wrong", "(borderline)", "leaks", "p99\nulp", "max\nulp", "max\n/ cond", "ns\na ray"];
+const HEADER: [&str; 9] = [
+    "family",
+    "cases",
+    "wrong",
+    "(borderline)",
+    "leaks",
+    "p99\nulp",
+    "max\nulp",
+    "max\n/ cond",
+    "ns\na ray",
+];
 
 /// A row a family: errors in `f32` ulps of the true `t`; `max / cond` is the largest error over its
-/// condition number, which a stable formula keeps small. `times` has each family's nanoseconds a ray.
+/// condition number, which a stable formula keeps small. `times` has each family's nanoseconds a
+/// ray.
 #[must_use]
 pub fn table(scores: &[FamilyScore], times: &[Option<f64>]) -> String {
     let error = |value: Option<f64>| match value {

@@ -30,15 +30,22 @@ pub fn text(verdict: &Verdict) -> String {
     }
     let wrong: Vec<String> =
         counts.iter().map(|(strategy, count)| format!("{strategy} ({count} findings)")).collect();
-    let sum =
-        if wrong.is_empty() { "all identical".to_owned() } else { format!("WRONG: {}", wrong.join(", ")) };
-    lines.push(format!("{} renderings compared with the reference, bit for bit: {sum}", verdict.compared));
+    let sum = if wrong.is_empty() {
+        "all identical".to_owned()
+    } else {
+        format!("WRONG: {}", wrong.join(", "))
+    };
+    lines.push(format!(
+        "{} renderings compared with the reference, bit for bit: {sum}",
+        verdict.compared
+    ));
     lines.join("\n")
 }
 
-/// The whole verdict as a JSON object of schema 1: `schema`, `checked`, `compared`, `holds`, `machine` and `findings`. Keys
-/// may be added. Each of `checked` has `strategies`, `pictures` (`scene`, `width`, `height`), `threads` and `tiles`, of which
-/// each was checked with each; what starts no thread was checked as one. Each of `findings` has `strategy`, `threads`, `kind`,
+/// The whole verdict as a JSON object of schema 1: `schema`, `checked`, `compared`, `holds`,
+/// `machine` and `findings`. Keys may be added. Each of `checked` has `strategies`, `pictures`
+/// (`scene`, `width`, `height`), `threads` and `tiles`, of which each was checked with each; what
+/// starts no thread was checked as one. Each of `findings` has `strategy`, `threads`, `kind`,
 /// `message` and, where it is about a picture, `picture`.
 #[must_use]
 pub fn json(verdict: &Verdict, machine: &Machine) -> String {
@@ -80,8 +87,11 @@ struct Size<'a> {
 
 impl<'a> Part<'a> {
     fn new(Checked { strategies, pictures, threads, tiles }: &'a Checked) -> Self {
-        let size =
-            |(scene, width, height): &'a (String, u32, u32)| Size { scene, width: *width, height: *height };
+        let size = |(scene, width, height): &'a (String, u32, u32)| Size {
+            scene,
+            width: *width,
+            height: *height,
+        };
         Self { strategies, pictures: pictures.iter().map(size).collect(), threads, tiles }
     }
 }
@@ -133,8 +143,13 @@ mod tests {
     use rayweave_measure::finding;
 
     fn verdict(findings: usize) -> Verdict {
-        let picture =
-            finding::Picture { scene: "room".to_owned(), width: 7, height: 3, tile: 8, repetition: 1 };
+        let picture = finding::Picture {
+            scene: "room".to_owned(),
+            width: 7,
+            height: 3,
+            tile: 8,
+            repetition: 1,
+        };
         let found = |found| Finding {
             strategy: "one",
             threads: 2,
@@ -142,8 +157,12 @@ mod tests {
             fault: Fault::Threads { expected: 2, found },
         };
         let pictures = vec![("room".to_owned(), 7, 3)];
-        let checked =
-            vec![Checked { strategies: vec!["one"], pictures, threads: vec![1, 2], tiles: vec![8] }];
+        let checked = vec![Checked {
+            strategies: vec!["one"],
+            pictures,
+            threads: vec![1, 2],
+            tiles: vec![8],
+        }];
         Verdict { checked, compared: 96, findings: (10..10 + findings).map(found).collect() }
     }
 
@@ -158,7 +177,10 @@ mod tests {
         let text = text(&verdict(7));
         let lines: Vec<&str> = text.lines().collect();
         assert_eq!(lines.len(), 7);
-        assert_eq!(lines[0], "one, 2 threads, room 7x3, tiles of 8: computing threads: expected 2, found 10");
+        assert_eq!(
+            lines[0],
+            "one, 2 threads, room 7x3, tiles of 8: computing threads: expected 2, found 10"
+        );
         assert_eq!(lines[5], "one: and 2 more");
         assert!(lines[6].ends_with("WRONG: one (7 findings)"));
     }
@@ -177,7 +199,10 @@ mod tests {
         }]);
         assert_eq!((&value["schema"], &value["checked"]), (&1.into(), &expected));
         let finding = &value["findings"][6];
-        assert_eq!((&finding["kind"], &finding["picture"]["scene"]), (&"threads".into(), &"room".into()));
+        assert_eq!(
+            (&finding["kind"], &finding["picture"]["scene"]),
+            (&"threads".into(), &"room".into())
+        );
         assert_eq!(finding["message"], "computing threads: expected 2, found 16");
         assert!(value["machine"]["compiler"].is_string());
     }

@@ -69,8 +69,8 @@ impl Report<'_> {
         table::text(self)
     }
 
-    /// For programs: an object of schema 1, which docs/compare-json.md describes. More keys may come, those there
-    /// stay.
+    /// For programs: an object of schema 1, which docs/compare-json.md describes. More keys may
+    /// come, those there stay.
     #[must_use]
     pub fn json(&self) -> String {
         json::text(self)
@@ -101,15 +101,16 @@ pub struct BothReport<'a> {
 }
 
 impl BothReport<'_> {
-    /// As [`Report::table`], first with samples shared and then without, and below both what the reference gains.
+    /// As [`Report::table`], first with samples shared and then without, and below both what the
+    /// reference gains.
     #[must_use]
     pub fn table(&self) -> String {
         table::both(self)
     }
 
-    /// The object of [`Report::json`] with samples shared, and in it two more keys: `unshared` is such an object
-    /// too, without, and `sharing_speedup` (as `speedup`) the reference's time without over its time with, or
-    /// null.
+    /// The object of [`Report::json`] with samples shared, and in it two more keys: `unshared` is
+    /// such an object too, without, and `sharing_speedup` (as `speedup`) the reference's time
+    /// without over its time with, or null.
     #[must_use]
     pub fn json(&self) -> String {
         json::both(self)
@@ -121,7 +122,8 @@ impl BothReport<'_> {
         format!("{}\n{}", self.shared.markdown(), self.unshared.markdown())
     }
 
-    /// The lines of [`Report::csv`] with samples shared, then those without: `share_samples` tells them apart.
+    /// The lines of [`Report::csv`] with samples shared, then those without: `share_samples` tells
+    /// them apart.
     #[must_use]
     pub fn csv(&self) -> String {
         csv::both(self)

@@ -38,23 +38,25 @@ pub struct Report<'a> {
 }
 
 impl Report<'_> {
-    /// For people: of each strategy where its thread-time goes, what each thread does, and what helps. Without a
-    /// newline at the end.
+    /// For people: of each strategy where its thread-time goes, what each thread does, and what
+    /// helps. Without a newline at the end.
     #[must_use]
     pub fn text(&self) -> String {
         table::text(self)
     }
 
-    /// For programs: an object of schema 1. Each of its `results` has `strategy`, `threads`, `wall_ns`, `speedup`,
-    /// `lost_ns`, `losses_ns` with a key for each cause, `unexplained_ns`, and what each of the `threads_recorded` did
-    /// in the quickest of the recorded renderings. `noise` is that of a comparison, in docs/compare-json.md.
+    /// For programs: an object of schema 1. Each of its `results` has `strategy`, `threads`,
+    /// `wall_ns`, `speedup`, `lost_ns`, `losses_ns` with a key for each cause, `unexplained_ns`,
+    /// and what each of the `threads_recorded` did in the quickest of the recorded renderings.
+    /// `noise` is that of a comparison, in docs/compare-json.md.
     #[must_use]
     pub fn json(&self) -> String {
         json::text(self)
     }
 
-    /// The time lines in the trace event format, for Perfetto (<https://ui.perfetto.dev>) and Chrome's tracing page.
-    /// Single pixels that a thread computes one after the other in a row are one slice.
+    /// The time lines in the trace event format, for Perfetto (<https://ui.perfetto.dev>) and
+    /// Chrome's tracing page. Single pixels that a thread computes one after the other in a row are
+    /// one slice.
     #[must_use]
     pub fn trace(&self) -> String {
         trace::text(self)
@@ -78,7 +80,8 @@ impl Report<'_> {
         map::cost(row, self.size)
     }
 
-    /// Of a strategy each pixel in the colour that the thread that computed it has in the time line.
+    /// Of a strategy each pixel in the colour that the thread that computed it has in the time
+    /// line.
     ///
     /// # Errors
     ///
@@ -136,8 +139,8 @@ impl<'a> Thread<'a> {
     }
 }
 
-/// The most that a thread computes over the mean of all that there are, in time; 1 is even, the number of threads is
-/// all on one.
+/// The most that a thread computes over the mean of all that there are, in time; 1 is even, the
+/// number of threads is all on one.
 fn imbalance(row: &Row) -> f64 {
     let busy = || row.timeline.lanes.iter().map(|lane| lane.busy_ns() as f64);
     let mean = busy().sum::<f64>() / row.threads.max(1) as f64;
@@ -149,7 +152,8 @@ fn label(name: Option<&str>, index: usize) -> String {
     name.map_or_else(|| format!("thread {index}"), str::to_owned)
 }
 
-/// A colour a thread, by Okabe and Ito, "Color Universal Design", 2008; they come again after the eighth.
+/// A colour a thread, by Okabe and Ito, "Color Universal Design", 2008; they come again after the
+/// eighth.
 fn color(thread: usize) -> RGBColor {
     const COLORS: [RGBColor; 8] = [
         RGBColor(0, 114, 178),

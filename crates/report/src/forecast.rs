@@ -38,21 +38,22 @@ const ASSUMPTIONS: [&str; 5] = [
 ];
 
 impl Report<'_> {
-    /// For people: predictions with the fitted laws, what of them could be checked here, and what they assume. Without a
-    /// newline at the end.
+    /// For people: predictions with the fitted laws, what of them could be checked here, and what
+    /// they assume. Without a newline at the end.
     #[must_use]
     pub fn table(&self) -> String {
         table::text(self)
     }
 
-    /// For programs: an object of schema 1, a result a strategy and number of threads, a law a strategy. `noise` is
-    /// that of a comparison, in docs/compare-json.md.
+    /// For programs: an object of schema 1, a result a strategy and number of threads, a law a
+    /// strategy. `noise` is that of a comparison, in docs/compare-json.md.
     #[must_use]
     pub fn json(&self) -> String {
         data::json(self)
     }
 
-    /// Speed-ups over numbers of threads on logarithmic axes, as SVG: lines predicted, circles measured.
+    /// Speed-ups over numbers of threads on logarithmic axes, as SVG: lines predicted, circles
+    /// measured.
     ///
     /// # Errors
     ///

@@ -6,7 +6,9 @@ use serde::Serialize;
 /// Two lines for people: processor, cores and limits; compiler, kind of build and commit.
 #[must_use]
 pub fn text(machine: &Machine) -> String {
-    let Machine { cpu, logical_cores, available_threads, os, arch, compiler, profile, commit, .. } = machine;
+    let Machine {
+        cpu, logical_cores, available_threads, os, arch, compiler, profile, commit, ..
+    } = machine;
     let quota = machine.quota.map(|cores| format!(", quota {cores} cores")).unwrap_or_default();
     let warning = if *profile == "release" { "" } else { " (times mean little)" };
     format!(

@@ -5,20 +5,29 @@ use serde::Serialize;
 
 /// One line, two if the times are to be doubted.
 pub(crate) fn text(noise: &Noise) -> String {
-    let share =
-        noise.share_of_others().map(|share| format!("others had {:.1} % of the machine", share * 100.0));
+    let share = noise
+        .share_of_others()
+        .map(|share| format!("others had {:.1} % of the machine", share * 100.0));
     let stolen = noise.stolen.filter(|stolen| !stolen.is_zero());
-    let stolen =
-        stolen.map(|stolen| format!("{:.1} s of it other machines on the same host", stolen.as_secs_f64()));
+    let stolen = stolen.map(|stolen| {
+        format!("{:.1} s of it other machines on the same host", stolen.as_secs_f64())
+    });
     let switches = noise.involuntary_switches.map(|times| format!("{times} involuntary switches"));
     let throttled = noise.throttled.filter(|&times| times > 0);
     let throttled = throttled.map(|times| format!("stopped {times} times by the group's limit"));
-    let clock =
-        noise.megahertz.as_ref().map(|range| format!("{:.0} to {:.0} MHz", range.start(), range.end()));
-    let known: Vec<String> = [share, stolen, throttled, switches, clock].into_iter().flatten().collect();
-    let known = if known.is_empty() { "this system does not tell".to_owned() } else { known.join("; ") };
-    let verdict =
-        if noise.is_disturbing() { "\nDISTURBED: measure again when the machine is quiet." } else { "" };
+    let clock = noise
+        .megahertz
+        .as_ref()
+        .map(|range| format!("{:.0} to {:.0} MHz", range.start(), range.end()));
+    let known: Vec<String> =
+        [share, stolen, throttled, switches, clock].into_iter().flatten().collect();
+    let known =
+        if known.is_empty() { "this system does not tell".to_owned() } else { known.join("; ") };
+    let verdict = if noise.is_disturbing() {
+        "\nDISTURBED: measure again when the machine is quiet."
+    } else {
+        ""
+    };
     format!("noise: {known}.{verdict}")
 }
 

@@ -68,8 +68,8 @@ impl Report<'_> {
         lines.join("\n")
     }
 
-    /// For programs: an object of schema 1, a result a strategy. Times are in nanoseconds; what could not be measured is
-    /// null, and `error` says why.
+    /// For programs: an object of schema 1, a result a strategy. Times are in nanoseconds; what
+    /// could not be measured is null, and `error` says why.
     #[must_use]
     pub fn json(&self) -> String {
         let Study { rows, step_ns, rounds } = self.study;
@@ -103,7 +103,18 @@ fn cells(row: &Row) -> [String; HEADER.len()] {
             style::significant(figures.later.median / 1e3),
         ],
     };
-    [row.strategy.to_owned(), row.threads.to_string(), piece, one, all, metg, side, prepare, first, later]
+    [
+        row.strategy.to_owned(),
+        row.threads.to_string(),
+        piece,
+        one,
+        all,
+        metg,
+        side,
+        prepare,
+        first,
+        later,
+    ]
 }
 
 fn dispatch(interval: Option<Interval>) -> String {
@@ -154,7 +165,8 @@ struct Item<'a> {
 impl<'a> Item<'a> {
     fn new(row: &'a Row) -> Self {
         let figures = row.figures.as_ref();
-        let interval = |of: fn(&Figures) -> Interval| figures.ok().map(|figures| of(figures).into());
+        let interval =
+            |of: fn(&Figures) -> Interval| figures.ok().map(|figures| of(figures).into());
         Self {
             strategy: row.strategy,
             threads: row.threads,
@@ -189,8 +201,13 @@ mod tests {
             later: interval(8_000.0),
         };
         let row = |strategy, piece, figures| Row { strategy, piece, threads: 2, figures };
-        let bands =
-            Figures { dispatch_one: None, dispatch_all: None, metg: None, break_even: None, ..figures };
+        let bands = Figures {
+            dispatch_one: None,
+            dispatch_all: None,
+            metg: None,
+            break_even: None,
+            ..figures
+        };
         let rows = vec![
             row("rows", Piece::Row, Ok(figures)),
             row("bands", Piece::Band, Ok(bands)),
@@ -204,10 +221,16 @@ mod tests {
         let (study, machine) = (study(), Machine::here());
         let table = Report { study: &study, machine: &machine, noise: &noise() }.table();
         let line = |name: &str| {
-            let line = table.lines().find(|line| line.starts_with(name)).unwrap_or_else(|| panic!("{table}"));
+            let line = table
+                .lines()
+                .find(|line| line.starts_with(name))
+                .unwrap_or_else(|| panic!("{table}"));
             line.split_whitespace().collect::<Vec<_>>().join(" ")
         };
-        assert_eq!(line("rows "), "rows 2 row 5.0 [4.0, 6.0] 80.0 [79.0, 81.0] 0.234 41 x 41 90.0 120 8.00");
+        assert_eq!(
+            line("rows "),
+            "rows 2 row 5.0 [4.0, 6.0] 80.0 [79.0, 81.0] 0.234 41 x 41 90.0 120 8.00"
+        );
         assert_eq!(line("bands "), "bands 2 band - - < 1 step - 90.0 120 8.00");
         assert_eq!(line("none "), "none 2 tile - - - - - - -");
         assert!(table.contains("\nnone: unavailable here\n"), "{table}");
@@ -220,7 +243,10 @@ mod tests {
         let value: serde_json::Value = serde_json::from_str(&text).expect("JSON");
         let [rows, bands, none] = [0, 1, 2].map(|index| &value["results"][index]);
         assert!(value["noise"]["disturbed"].is_boolean(), "{text}");
-        assert_eq!((&rows["metg_ns"], &rows["dispatch_all_ns"]["high"]), (&234.0.into(), &81.0.into()));
+        assert_eq!(
+            (&rows["metg_ns"], &rows["dispatch_all_ns"]["high"]),
+            (&234.0.into(), &81.0.into())
+        );
         assert!(bands["dispatch_one_ns"].is_null() && bands["error"].is_null());
         assert!(none["prepare_ns"].is_null());
         assert_eq!(none["error"], "none: unavailable here");

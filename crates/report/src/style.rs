@@ -4,7 +4,8 @@ use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Row, Table, Tabl
 use rayweave_measure::Interval;
 use std::ops::RangeInclusive;
 
-const STYLE: TableStyle = TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'));
+const STYLE: TableStyle =
+    TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'));
 
 /// A table without a newline at the end; the columns `numbers` line up at their right.
 pub(crate) fn table<R: Into<Row>>(
@@ -13,7 +14,8 @@ pub(crate) fn table<R: Into<Row>>(
     numbers: RangeInclusive<usize>,
 ) -> String {
     let mut table = Table::new();
-    // Neither colours nor a wrapping that depends on the window: a result reads the same everywhere.
+    // Neither colours nor a wrapping that depends on the window: a result reads the same
+    // everywhere.
     table.force_no_tty().load_style(STYLE).set_content_arrangement(ContentArrangement::Disabled);
     table.set_header(header).add_rows(rows);
     for (index, column) in table.column_iter_mut().enumerate() {

@@ -25,8 +25,8 @@ pub struct Report<'a> {
 }
 
 impl Report<'_> {
-    /// For people: every setting, which of them are worth choosing, and what to choose. Without a newline
-    /// at the end.
+    /// For people: every setting, which of them are worth choosing, and what to choose. Without a
+    /// newline at the end.
     #[must_use]
     pub fn table(&self) -> String {
         table::text(self)

@@ -4,7 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use rayweave_core::Scene;
-use rayweave_core::scene::{Camera, Cylinder, Light, Material, Plane, RenderSettings, Sphere, Triangle};
+use rayweave_core::scene::{
+    Camera, Cylinder, Light, Material, Plane, RenderSettings, Sphere, Triangle,
+};
 
 use crate::error::{Problem, Refusal};
 use crate::fields::{Field, Fields};
@@ -13,8 +15,10 @@ use crate::phrase;
 use crate::scene::{self, ImageSize, SceneFile};
 
 /// The keys at the top of a scene file.
-const KEYS: [&str; 10] =
-    ["image", "camera", "render", "light", "material", "plane", "sphere", "triangle", "mesh", "cylinder"];
+const KEYS: [&str; 10] = [
+    "image", "camera", "render", "light", "material", "plane", "sphere", "triangle", "mesh",
+    "cylinder",
+];
 
 /// Those of [`KEYS`] that stand for any number of entries, each under a header `[[key]]`.
 pub(crate) const ENTRIES: [&str; 6] = ["light", "plane", "sphere", "triangle", "mesh", "cylinder"];
@@ -66,7 +70,8 @@ impl Draft {
         let grows = |key: &str, field: &Field| {
             (key == "material" || ENTRIES.contains(&key)) && field.is_under_headers()
         };
-        let closed = part.iter().filter(|(key, field)| !grows(key, field)).map(|(key, _)| key.to_owned());
+        let closed =
+            part.iter().filter(|(key, field)| !grows(key, field)).map(|(key, _)| key.to_owned());
         self.closed.extend(closed);
         Ok(())
     }
@@ -83,8 +88,9 @@ impl Draft {
 
     /// The scene, now that the whole file is read, with the meshes that lie in `folder`.
     pub(crate) fn finish(self, folder: Option<&Path>) -> Result<SceneFile, Refusal> {
-        let camera =
-            self.camera.ok_or_else(|| Problem::of_key(0, "camera".into(), "missing, but required".into()))?;
+        let camera = self
+            .camera
+            .ok_or_else(|| Problem::of_key(0, "camera".into(), "missing, but required".into()))?;
         let index = self.mentions.resolve(&self.materials)?;
         let mut triangles = Triangles::after(self.triangles);
         for mesh in self.meshes {
@@ -102,8 +108,14 @@ impl Draft {
         };
         scene.planes.iter_mut().for_each(|plane| plane.material = index[plane.material]);
         scene.spheres.iter_mut().for_each(|sphere| sphere.material = index[sphere.material]);
-        scene.triangles.iter_mut().for_each(|triangle| triangle.material = index[triangle.material]);
-        scene.cylinders.iter_mut().for_each(|cylinder| cylinder.material = index[cylinder.material]);
+        scene
+            .triangles
+            .iter_mut()
+            .for_each(|triangle| triangle.material = index[triangle.material]);
+        scene
+            .cylinders
+            .iter_mut()
+            .for_each(|cylinder| cylinder.material = index[cylinder.material]);
         let image = self.image.unwrap_or_default();
         Ok(SceneFile { image, scene, skipped_triangles: triangles.skipped })
     }

@@ -37,7 +37,12 @@ pub struct Position {
 impl SceneFileError {
     /// A fault of the whole file, whatever it contains.
     pub(crate) fn of_file(file: &str, message: String) -> Self {
-        Self { file: phrase::escaped(file), position: None, key: None, message: phrase::escaped(&message) }
+        Self {
+            file: phrase::escaped(file),
+            position: None,
+            key: None,
+            message: phrase::escaped(&message),
+        }
     }
 
     /// File, position and key, as far as there are any.
@@ -162,7 +167,12 @@ impl Refusal {
 fn found(span: Range<usize>, text: &str) -> String {
     let start = text.floor_char_boundary(span.start);
     let rest = text[start..].lines().next().unwrap_or_default();
-    match text.get(start..span.end).map(str::trim_end).filter(|there| !there.is_empty()).unwrap_or(rest) {
+    match text
+        .get(start..span.end)
+        .map(str::trim_end)
+        .filter(|there| !there.is_empty())
+        .unwrap_or(rest)
+    {
         "" if start == text.len() => "the end of the file".into(),
         "" => "the end of the line".into(),
         there => format!("`{}`", phrase::shortened(there)),

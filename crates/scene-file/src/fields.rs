@@ -84,7 +84,8 @@ impl<'a> Fields<'a> {
 
     /// The value of `key`, whatever its type.
     pub(crate) fn field<'s>(&'s self, key: &'s str) -> Result<Field<'s>, Problem> {
-        self.get(key).ok_or_else(|| self.problem(self.span.start, key, "missing, but required".into()))
+        self.get(key)
+            .ok_or_else(|| self.problem(self.span.start, key, "missing, but required".into()))
     }
 
     /// The value of `key`.
@@ -127,13 +128,19 @@ impl<'a> Fields<'a> {
     /// The complaint that `key`, which is here, stands further up in the file as well: in the words
     /// of the TOML parser, which sees only one of them.
     pub(crate) fn duplicate(&self, key: &str) -> Problem {
-        let offset = self.table.get_key_value(key).map_or(self.span.start, |(key, _)| key.span().start);
+        let offset =
+            self.table.get_key_value(key).map_or(self.span.start, |(key, _)| key.span().start);
         let message = format!("not valid TOML: duplicate key, found `{}`", phrase::shortened(key));
         Problem::at(self.source.start + offset, message)
     }
 
-    /// Gives the entry that was read from these keys, or the fault that `check` found in it a place.
-    pub(crate) fn checked<T>(&self, entry: T, check: impl Fn(&T) -> Result<(), Fault>) -> Result<T, Problem> {
+    /// Gives the entry that was read from these keys, or the fault that `check` found in it a
+    /// place.
+    pub(crate) fn checked<T>(
+        &self,
+        entry: T,
+        check: impl Fn(&T) -> Result<(), Fault>,
+    ) -> Result<T, Problem> {
         check(&entry).map(|()| entry).map_err(|fault| {
             // As it is written in the file; a default is not, and stands for its table.
             let (offset, found) = match self.get(fault.key) {

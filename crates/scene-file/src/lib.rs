@@ -1,8 +1,8 @@
 //! Reads scene files: TOML to a scene, every fault with its file, line, column and key.
 //!
-//! [`load`] reads a file and the meshes beside it, [`parse`] text that is already there. What a scene may contain is said by
-//! the types of [`rayweave_core::scene`]; this crate knows how the keys are spelled, which of them
-//! may be left out, and where in the file each stands.
+//! [`load`] reads a file and the meshes beside it, [`parse`] text that is already there. What a
+//! scene may contain is said by the types of [`rayweave_core::scene`]; this crate knows how the
+//! keys are spelled, which of them may be left out, and where in the file each stands.
 
 mod draft;
 mod error;
@@ -29,7 +29,8 @@ pub const REPORT_SCENE: &str = include_str!("../../../scenes/report.toml");
 /// The scene of [`REPORT_SCENE`].
 #[must_use]
 pub fn report_scene() -> SceneFile {
-    parse(REPORT_SCENE.as_bytes(), "report.toml").expect("the built-in scene is sound, a test holds it")
+    parse(REPORT_SCENE.as_bytes(), "report.toml")
+        .expect("the built-in scene is sound, a test holds it")
 }
 
 /// Reads the text of a scene file without meshes. `name` is what its errors call the file.

@@ -6,8 +6,8 @@ use std::path::Path;
 
 use crate::{SceneFile, SceneFileError, parse_in};
 
-/// The largest file that is read, be it a scene or a mesh: 256 MiB, which is some 3 million spheres or
-/// 6 million triangles.
+/// The largest file that is read, be it a scene or a mesh: 256 MiB, which is some 3 million spheres
+/// or 6 million triangles.
 pub const MAX_BYTES: u64 = 256 << 20;
 
 /// Reads a scene file and the meshes that it names. Its errors call the file by `path`, and a mesh
@@ -44,5 +44,9 @@ pub(crate) fn bytes_of(path: &Path) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
     let file = File::open(path).map_err(unreadable)?;
     let read = file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
-    if u64::try_from(read).is_ok_and(|read| read <= MAX_BYTES) { Ok(bytes) } else { Err(too_large()) }
+    if u64::try_from(read).is_ok_and(|read| read <= MAX_BYTES) {
+        Ok(bytes)
+    } else {
+        Err(too_large())
+    }
 }

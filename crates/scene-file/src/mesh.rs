@@ -9,8 +9,8 @@ use crate::error::{Problem, Refusal, SceneFileError};
 use crate::fields::Field;
 use crate::{load, obj};
 
-/// The most triangles that the meshes of a scene may have together: 8,388,608. A face of a few bytes
-/// can stand for any number of them, so the size of the files alone is no limit.
+/// The most triangles that the meshes of a scene may have together: 8,388,608. A face of a few
+/// bytes can stand for any number of them, so the size of the files alone is no limit.
 pub const MAX_MESH_TRIANGLES: usize = 8 << 20;
 
 /// A mesh whose file is yet to be read.
@@ -42,19 +42,29 @@ impl Mesh {
         if path.as_os_str().is_empty() || !path.components().all(down) {
             return Err(field.expected("a path in the folder of the scene file, without `..`"));
         }
-        let empty =
-            format!("expected an OBJ file with a triangle that has an area, found {}", field.written());
+        let empty = format!(
+            "expected an OBJ file with a triangle that has an area, found {}",
+            field.written()
+        );
         Ok(Self { path, material, empty: field.problem(empty) })
     }
 
     /// Appends the mesh to `triangles`; its file is looked for in `folder`.
-    pub(crate) fn read(self, folder: Option<&Path>, triangles: &mut Triangles) -> Result<(), Refusal> {
+    pub(crate) fn read(
+        self,
+        folder: Option<&Path>,
+        triangles: &mut Triangles,
+    ) -> Result<(), Refusal> {
         let Some(folder) = folder else {
-            return Err(self.empty.adding("a scene that is not read from a file has no meshes").into());
+            return Err(self
+                .empty
+                .adding("a scene that is not read from a file has no meshes")
+                .into());
         };
         let file = folder.join(&self.path);
         let name = file.display().to_string();
-        let bytes = load::bytes_of(&file).map_err(|message| SceneFileError::of_file(&name, message))?;
+        let bytes =
+            load::bytes_of(&file).map_err(|message| SceneFileError::of_file(&name, message))?;
         let before = triangles.kept.len();
         obj::read(&bytes, |vertices| triangles.add(vertices, self.material))
             .map_err(|fault| fault.within(&bytes, &name))?;

@@ -1,8 +1,9 @@
 //! The part of Wavefront OBJ that a mesh is made of: vertices and faces.
 //!
-//! Read by hand, because no library keeps to what a scene file promises. `tobj` and `obj-rs` do not say
-//! in which line a fault is, and the first takes vertices from below a face; `obj` computes in `f32` and
-//! takes any index and number of corners; `wavefront_obj` refuses lines of a kind that it does not know.
+//! Read by hand, because no library keeps to what a scene file promises. `tobj` and `obj-rs` do not
+//! say in which line a fault is, and the first takes vertices from below a face; `obj` computes in
+//! `f32` and takes any index and number of corners; `wavefront_obj` refuses lines of a kind that it
+//! does not know.
 
 use std::str::FromStr;
 
@@ -27,7 +28,10 @@ impl Fault {
 }
 
 /// Hands every triangle of the file to `add`: face by face, each a fan around its first corner.
-pub(crate) fn read(bytes: &[u8], mut add: impl FnMut([DVec3; 3]) -> Result<(), String>) -> Result<(), Fault> {
+pub(crate) fn read(
+    bytes: &[u8],
+    mut add: impl FnMut([DVec3; 3]) -> Result<(), String>,
+) -> Result<(), Fault> {
     let mut vertices = Vec::new();
     // A byte order mark would hide the keyword of the first line.
     let text = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes);
@@ -69,8 +73,12 @@ fn face<'a>(
     add: &mut impl FnMut([DVec3; 3]) -> Result<(), String>,
 ) -> Result<(), Located<'a>> {
     let mut corners = words(line).skip(1).map(|word| corner(word, vertices));
-    let (Some(first), Some(second), Some(third)) = (corners.next(), corners.next(), corners.next()) else {
-        return Err((line, format!("expected `f` and three corners or more, found {}", shown(line))));
+    let (Some(first), Some(second), Some(third)) = (corners.next(), corners.next(), corners.next())
+    else {
+        return Err((
+            line,
+            format!("expected `f` and three corners or more, found {}", shown(line)),
+        ));
     };
     let (first, mut last) = (first?, second?);
     for next in std::iter::once(third).chain(corners) {
@@ -91,7 +99,13 @@ fn corner<'a>(word: &'a [u8], vertices: &[DVec3]) -> Result<DVec3, Located<'a>> 
     });
     index.and_then(|index| vertices.get(index)).copied().ok_or_else(|| {
         let count = vertices.len();
-        (word, format!("expected the number of one of the {count} vertices above, found {}", shown(word)))
+        (
+            word,
+            format!(
+                "expected the number of one of the {count} vertices above, found {}",
+                shown(word)
+            ),
+        )
     })
 }
 

@@ -1,10 +1,10 @@
-//! The document in parts. A parsed document takes some thirty times the room of its text, so a long one is
-//! parsed, read and forgotten part by part.
+//! The document in parts. A parsed document takes some thirty times the room of its text, so a long
+//! one is parsed, read and forgotten part by part.
 //!
-//! A part is cut off before a line `[[sphere]]` or of another kind of entry. What is above such a line
-//! is, if it is TOML, complete: the line is then a header and begins what could be a document of its
-//! own. If it is not TOML by itself, the line may have been within a string of many lines, so the part
-//! is tried again with more of the text.
+//! A part is cut off before a line `[[sphere]]` or of another kind of entry. What is above such a
+//! line is, if it is TOML, complete: the line is then a header and begins what could be a document
+//! of its own. If it is not TOML by itself, the line may have been within a string of many lines,
+//! so the part is tried again with more of the text.
 
 use toml::de::DeTable;
 
@@ -36,7 +36,8 @@ fn part(text: &str, start: usize) -> Result<(Source<'_>, DeTable<'_>), Problem> 
     loop {
         let end = cut(rest, least);
         if end > LONGEST {
-            let message = format!("no header of an entry within {} MiB: too long to be read", LONGEST >> 20);
+            let message =
+                format!("no header of an entry within {} MiB: too long to be read", LONGEST >> 20);
             return Err(Problem::at(start, message));
         }
         let part = &rest[..end];

@@ -1,4 +1,5 @@
-//! Text from the file made fit for a message: on one line, short, and with a better word for a typo.
+//! Text from the file made fit for a message: on one line, short, and with a better word for a
+//! typo.
 
 /// The number of characters of an echoed value.
 const LONGEST: usize = 60;

@@ -49,7 +49,11 @@ impl ImageSize {
     pub fn check(&self) -> Result<(), Fault> {
         for (key, side) in [("width", self.width), ("height", self.height)] {
             if !(1..=MAX_SIDE).contains(&side) {
-                return Err(Fault { key, expected: "an integer in 1..=65535", found: side.to_string() });
+                return Err(Fault {
+                    key,
+                    expected: "an integer in 1..=65535",
+                    found: side.to_string(),
+                });
             }
         }
         Ok(())

@@ -1,5 +1,5 @@
-//! Compiles `src/loops.c` where the C compiler and its linker know OpenMP. Elsewhere the crate is built
-//! without, and says why.
+//! Compiles `src/loops.c` where the C compiler and its linker know OpenMP. Elsewhere the crate is
+//! built without, and says why.
 
 use std::env;
 use std::path::{Path, PathBuf};
@@ -29,7 +29,8 @@ fn main() {
 
 fn compile() -> Result<(), String> {
     let mut build = cc::Build::new();
-    // What this compiler cannot do is no news while building: the strategies tell who asks for them.
+    // What this compiler cannot do is no news while building: the strategies tell who asks for
+    // them.
     build.cargo_warnings(false).file(LOOPS).flag(FLAG);
     let compiler = build.try_get_compiler().map_err(|_| "there is no C compiler".to_owned())?;
     let name = compiler.path().display();
@@ -42,12 +43,14 @@ fn compile() -> Result<(), String> {
         runs(command.args([LOOPS, PROBE]).args(arguments).arg("-o").arg(folder.join("probe")))
     };
     if !link(&[]) {
-        return Err(format!("the C compiler {name} does not know {FLAG}, or has no library for it"));
+        return Err(format!(
+            "the C compiler {name} does not know {FLAG}, or has no library for it"
+        ));
     }
     // Rust's linker does not know the flag, and has to be told the library.
     let library = LIBRARIES.into_iter().find(|library| link(&[format!("-l{library}")]));
-    let library =
-        library.ok_or_else(|| format!("the OpenMP library of the C compiler {name} is not known"))?;
+    let library = library
+        .ok_or_else(|| format!("the OpenMP library of the C compiler {name} is not known"))?;
     build.try_compile("rayweave_openmp_loops").map_err(|e| format!("{name}: {e}"))?;
     if let Some(folder) = folder_of(library, compiler.path()) {
         println!("cargo::rustc-link-search=native={}", folder.display());

@@ -1,9 +1,9 @@
 //! Forks scoped threads, joins them, and lets them stop together: what every strategy with
 //! hand-spawned threads needs, and no strategy should have to say twice.
 //!
-//! The team is forked at each call of [`run`]; nothing outlives it. The caller's thread only waits. As a member it would be one
-//! thread less to start, but Linux often leaves a new thread behind the one that started it, on the same core, until its
-//! scheduler looks again some milliseconds later.
+//! The team is forked at each call of [`run`]; nothing outlives it. The caller's thread only waits.
+//! As a member it would be one thread less to start, but Linux often leaves a new thread behind the
+//! one that started it, on the same core, until its scheduler looks again some milliseconds later.
 
 use rayweave_contract::{StrategyError, Tile, Work, render_tile};
 use std::iter;
@@ -42,8 +42,8 @@ pub fn run<Share: Send>(
     run_beside(strategy, shares, body, || {})
 }
 
-/// As [`run`], while the caller's thread does `meanwhile`: it begins when all threads are started, or
-/// have failed to, and has to end when they do.
+/// As [`run`], while the caller's thread does `meanwhile`: it begins when all threads are started,
+/// or have failed to, and has to end when they do.
 ///
 /// # Errors
 ///
@@ -71,8 +71,8 @@ pub fn run_beside<Share: Send>(
     team.outcome()
 }
 
-/// Whether so many threads can be started at once, for libraries that would end the process or panic
-/// where they cannot: starts them, and ends them when the last has begun.
+/// Whether so many threads can be started at once, for libraries that would end the process or
+/// panic where they cannot: starts them, and ends them when the last has begun.
 ///
 /// # Errors
 ///
@@ -87,9 +87,12 @@ pub fn try_out(strategy: &'static str, threads: NonZeroUsize) -> Result<(), Stra
     run_beside(strategy, iter::repeat_n((), threads.get()), wait, || drop(closed))
 }
 
-/// Cuts `count` pieces into as many ranges as there are threads, equal but for one piece; empty ones
-/// where there are more threads than pieces.
-pub fn equal_shares(count: usize, threads: NonZeroUsize) -> impl ExactSizeIterator<Item = Range<usize>> {
+/// Cuts `count` pieces into as many ranges as there are threads, equal but for one piece; empty
+/// ones where there are more threads than pieces.
+pub fn equal_shares(
+    count: usize,
+    threads: NonZeroUsize,
+) -> impl ExactSizeIterator<Item = Range<usize>> {
     let threads = threads.get();
     (0..threads).map(move |share| count * share / threads..count * (share + 1) / threads)
 }
@@ -153,8 +156,9 @@ mod tests {
     fn the_caller_works_beside_the_team() {
         let (sender, receiver) = mpsc::channel();
         let mut received = Vec::new();
-        let send =
-            |_: &Team, (index, sender): (usize, mpsc::Sender<usize>)| sender.send(index).map_err(|_| Stop);
+        let send = |_: &Team, (index, sender): (usize, mpsc::Sender<usize>)| {
+            sender.send(index).map_err(|_| Stop)
+        };
         let senders = iter::repeat_n(sender, 5).enumerate();
         run_beside("test", senders, send, || received.extend(receiver)).expect("the threads start");
         received.sort_unstable();

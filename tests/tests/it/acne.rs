@@ -29,7 +29,12 @@ fn scene() -> Scene {
             ..RenderSettings::default()
         },
         lights: Vec::new(),
-        materials: vec![Material { ambient: 0.0, diffuse: 1.0, specular: 0.0, ..Material::new(DVec3::X) }],
+        materials: vec![Material {
+            ambient: 0.0,
+            diffuse: 1.0,
+            specular: 0.0,
+            ..Material::new(DVec3::X)
+        }],
         planes: Vec::new(),
         spheres: Vec::new(),
         triangles: Vec::new(),
@@ -49,7 +54,10 @@ fn things() -> [(&'static str, Scene); 6] {
     [
         (
             "sphere",
-            Scene { spheres: vec![Sphere { center: DVec3::ZERO, radius: 1.0, material: 0 }], ..scene() },
+            Scene {
+                spheres: vec![Sphere { center: DVec3::ZERO, radius: 1.0, material: 0 }],
+                ..scene()
+            },
         ),
         ("plane", Scene { planes: vec![plane], ..scene() }),
         ("plane from below", Scene { planes: vec![plane], camera: seen_from(below), ..scene() }),
@@ -60,7 +68,10 @@ fn things() -> [(&'static str, Scene); 6] {
         ),
         (
             "cylinder",
-            Scene { cylinders: vec![Cylinder { bottom, top, radius: 0.7, material: 0 }], ..scene() },
+            Scene {
+                cylinders: vec![Cylinder { bottom, top, radius: 0.7, material: 0 }],
+                ..scene()
+            },
         ),
     ]
 }
@@ -72,8 +83,9 @@ fn everywhere(change: impl Fn(&mut Scene)) -> Vec<(String, Scene, Precision)> {
     let mut all = Vec::new();
     for (name, mut scene) in things() {
         change(&mut scene);
-        for (scale, offset) in
-            [1e-3, 0.037, 1.0, 17.3, 1e3].into_iter().flat_map(|scale| offsets.map(|offset| (scale, offset)))
+        for (scale, offset) in [1e-3, 0.037, 1.0, 17.3, 1e3]
+            .into_iter()
+            .flat_map(|scale| offsets.map(|offset| (scale, offset)))
         {
             let offset = DVec3::from_array(offset);
             // What `f32` has, so that the model sees the very same surface.
@@ -108,9 +120,15 @@ fn what_the_model_lights_is_lit() {
                 let place = picture.position(index);
                 let error = (f64::from(found[0]) - right[0]).abs();
                 // Black would be off by as much as the pixel is lit.
-                assert!(error < 0.02, "{name}: {found:?} at {place:?}, not {right:?}; light {light:?}");
+                assert!(
+                    error < 0.02,
+                    "{name}: {found:?} at {place:?}, not {right:?}; light {light:?}"
+                );
             }
-            assert!(outline <= 3, "{name}: {outline} pixels show the thing or do not; light {light:?}");
+            assert!(
+                outline <= 3,
+                "{name}: {outline} pixels show the thing or do not; light {light:?}"
+            );
         }
         assert!(compared > 100_000, "only {compared} pixels show a thing");
     }

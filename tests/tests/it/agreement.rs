@@ -22,7 +22,8 @@ fn render(scene: &Scene, precision: Precision) -> Image {
 /// PSNR of the tracer in `f32` and in `f64`.
 fn agreement(scene: &Scene) -> [f64; 2] {
     let truth = model::render(scene, WIDTH, HEIGHT);
-    [Precision::F32, Precision::F64].map(|precision| metrics::psnr(&truth, &render(scene, precision)))
+    [Precision::F32, Precision::F64]
+        .map(|precision| metrics::psnr(&truth, &render(scene, precision)))
 }
 
 /// Catches whatever the tracer means differently from the model: the goal is 50 dB in `f32`. What
@@ -55,6 +56,9 @@ fn the_repository_s_scenes_agree() {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../scenes/{name}.toml"));
         let scene = rayweave_scene_file::load(&path).expect("loads").scene;
         let [f32, f64] = agreement(&scene);
-        assert!(f32 >= at_least && f64 >= at_least, "{name}: {f32:.1} dB in f32, {f64:.1} dB in f64");
+        assert!(
+            f32 >= at_least && f64 >= at_least,
+            "{name}: {f32:.1} dB in f32, {f64:.1} dB in f64"
+        );
     }
 }

@@ -2,8 +2,8 @@
 
 use crate::gradient::{Gradient, PATIENCE, Panics, threads, tile};
 use rayweave_contract::{
-    Area, Dealing, Delivery, Image, Piece, Plan, Renderer, Rgb, Rule, Strategy, StrategyError, ThreadsStart,
-    Tile, Work, render_tile,
+    Area, Dealing, Delivery, Image, Piece, Plan, Renderer, Rgb, Rule, Strategy, StrategyError,
+    ThreadsStart, Tile, Work, render_tile,
 };
 use rayweave_measure::{Case, Check, Fault, Finding};
 use rayweave_registry::reference;
@@ -30,7 +30,11 @@ impl Strategy for Broken {
     }
 
     fn rule(&self) -> Rule {
-        Rule { piece: Piece::Tile, dealing: Dealing::Shared { chunk: 1 }, delivery: Delivery::InPlace }
+        Rule {
+            piece: Piece::Tile,
+            dealing: Dealing::Shared { chunk: 1 },
+            delivery: Delivery::InPlace,
+        }
     }
 
     fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
@@ -55,7 +59,8 @@ fn share_out(threads: usize, work: &dyn Work, tiles: Vec<Tile<'_>>) -> Result<()
     thread::scope(|scope| {
         for (index, mut share) in shares.into_iter().enumerate() {
             let thread = thread::Builder::new().name(format!("share {index}"));
-            let compute = move || share.iter_mut().try_for_each(|tile| render_tile(NAME, work, tile));
+            let compute =
+                move || share.iter_mut().try_for_each(|tile| render_tile(NAME, work, tile));
             thread.spawn_scoped(scope, compute).expect("a thread");
         }
     });
@@ -70,7 +75,12 @@ fn right(plan: Plan, work: &dyn Work, image: &mut Image) -> Result<(), StrategyE
 const IMPATIENCE: Duration = Duration::from_millis(200);
 
 /// What a check of two threads and tiles of 8 says about a picture of this size.
-fn findings_at(strategy: &dyn Strategy, width: u32, height: u32, timeout: Duration) -> Vec<Finding> {
+fn findings_at(
+    strategy: &dyn Strategy,
+    width: u32,
+    height: u32,
+    timeout: Duration,
+) -> Vec<Finding> {
     let cases = [Case { name: "gradient".to_owned(), width, height, work: Box::new(Gradient) }];
     let check = Check {
         reference: reference(),
@@ -95,8 +105,14 @@ type By = (Area, Option<String>);
 /// there, in which tile and by whom it was computed.
 #[track_caller]
 fn the_difference(findings: &[Finding]) -> (usize, (u32, u32), Option<Rgb>, Option<By>) {
-    let [Finding { strategy: NAME, threads: 2, picture: Some(picture), fault: Fault::Different(found) }] =
-        findings
+    let [
+        Finding {
+            strategy: NAME,
+            threads: 2,
+            picture: Some(picture),
+            fault: Fault::Different(found),
+        },
+    ] = findings
     else {
         panic!("not a single difference: {findings:#?}");
     };
@@ -117,7 +133,8 @@ fn drops_a_row() {
     let found = findings(|plan, work, image| {
         let width = image.width() as usize;
         let rows = image.pixels_mut().chunks_mut(width).enumerate();
-        let rows = rows.filter(|(y, _)| *y != 6).map(|(y, row)| Tile::row(0, y as u32, row)).collect();
+        let rows =
+            rows.filter(|(y, _)| *y != 6).map(|(y, row)| Tile::row(0, y as u32, row)).collect();
         share_out(plan.threads.get(), work, rows)
     });
     assert_eq!(the_difference(&found), (20, (0, 6), None, None));
@@ -175,7 +192,11 @@ fn computes_a_tile_twice_with_the_same_result() {
     let found = findings(|plan, work, image| {
         right(plan, work, image)?;
         let tiles = image.tiles(plan.tile);
-        if tiles.len() == 6 { share_out(1, work, tiles.into_iter().skip(5).collect()) } else { Ok(()) }
+        if tiles.len() == 6 {
+            share_out(1, work, tiles.into_iter().skip(5).collect())
+        } else {
+            Ok(())
+        }
     });
     let [Finding { fault: Fault::NotOnce { pixels, x, y, computations }, .. }, third_thread] =
         found.as_slice()
@@ -220,7 +241,9 @@ fn computes_with_one_thread_only() {
 
 #[test]
 fn computes_with_one_thread_more() {
-    let found = findings(|plan, work, image| share_out(plan.threads.get() + 1, work, image.tiles(plan.tile)));
+    let found = findings(|plan, work, image| {
+        share_out(plan.threads.get() + 1, work, image.tiles(plan.tile))
+    });
     // Once while its threads are counted, once for the picture.
     assert_eq!(faults(&found), [&Fault::Threads { expected: 2, found: 3 }; 2]);
 }
@@ -247,7 +270,8 @@ fn computes_with_one_thread_whenever_tiles_are_larger_than_a_pixel() {
         share_out(threads, work, image.tiles(plan.tile))
     });
     let found = findings_at(&alone, 20, 12, IMPATIENCE);
-    let message = "broken, 2 threads, rendezvous 8x32, tiles of 8: computing threads: expected 2, found 1";
+    let message =
+        "broken, 2 threads, rendezvous 8x32, tiles of 8: computing threads: expected 2, found 1";
     assert_eq!(found.iter().map(Finding::to_string).collect::<Vec<_>>(), [message]);
 }
 
@@ -379,7 +403,11 @@ impl Strategy for Remembers {
     }
 
     fn rule(&self) -> Rule {
-        Rule { piece: Piece::Tile, dealing: Dealing::Shared { chunk: 1 }, delivery: Delivery::InPlace }
+        Rule {
+            piece: Piece::Tile,
+            dealing: Dealing::Shared { chunk: 1 },
+            delivery: Delivery::InPlace,
+        }
     }
 
     fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
@@ -407,7 +435,10 @@ impl Renderer for Memory {
 #[test]
 fn does_not_compute_the_second_time() {
     let found = findings_at(&Remembers, 20, 12, PATIENCE);
-    assert_eq!(faults(&found), [&Fault::NotOnce { pixels: 240, x: 0, y: 0, computations: Vec::new() }]);
+    assert_eq!(
+        faults(&found),
+        [&Fault::NotOnce { pixels: 240, x: 0, y: 0, computations: Vec::new() }]
+    );
     assert_eq!(found[0].picture.as_ref().map(|picture| picture.repetition), Some(2));
 }
 

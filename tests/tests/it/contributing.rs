@@ -1,14 +1,23 @@
 //! Takes the steps of CONTRIBUTING.md, "How to add a strategy", as they stand there, in a copy of
-//! the workspace. Catches a contract that changed under its description, and any place besides
-//! the registry that has to know a strategy. In the same copy: a machine whose C compiler has no OpenMP.
+//! the workspace. Catches a contract that changed under its description, and any place besides the
+//! registry that has to know a strategy. In the same copy: a machine whose C compiler has no
+//! OpenMP.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 /// What a copy of the workspace needs to be built.
-const PARTS: [&str; 8] =
-    [".cargo", "Cargo.toml", "Cargo.lock", "crates", "benches", "tests", "scenes", "CONTRIBUTING.md"];
+const PARTS: [&str; 8] = [
+    ".cargo",
+    "Cargo.toml",
+    "Cargo.lock",
+    "crates",
+    "benches",
+    "tests",
+    "scenes",
+    "CONTRIBUTING.md",
+];
 
 const STRATEGY: &str = "dealt-rows";
 
@@ -39,7 +48,9 @@ fn blocks(text: &str, language: &str) -> Vec<String> {
         if line.trim() == fence {
             let indent = line.len() - line.trim_start().len();
             let body = lines.by_ref().take_while(|line| line.trim() != "```");
-            blocks.push(body.map(|line| line.get(indent..).unwrap_or("").to_owned() + "\n").collect());
+            blocks.push(
+                body.map(|line| line.get(indent..).unwrap_or("").to_owned() + "\n").collect(),
+            );
         }
     }
     blocks
@@ -53,7 +64,12 @@ fn insert(file: &Path, after: &str, line: &str) {
 /// Puts `new` in place of the one line that is `old`.
 fn replace(file: &Path, old: &str, new: &str) {
     let text = fs::read_to_string(file).expect("the file");
-    assert_eq!(text.lines().filter(|found| found.trim() == old).count(), 1, "{old} in {}", file.display());
+    assert_eq!(
+        text.lines().filter(|found| found.trim() == old).count(),
+        1,
+        "{old} in {}",
+        file.display()
+    );
     fs::write(file, text.replacen(old, new, 1)).expect("written");
 }
 
@@ -84,8 +100,8 @@ fn share_dependencies() {
     }
 }
 
-/// Files of one folder in another, but for our own: by a second name where nobody writes, which is not so of the
-/// fingerprints.
+/// Files of one folder in another, but for our own: by a second name where nobody writes, which is
+/// not so of the fingerprints.
 fn share(from: &Path, to: &Path) {
     let Ok(entries) = fs::read_dir(from) else { return };
     fs::create_dir_all(to).expect("a folder");
@@ -108,14 +124,19 @@ fn share(from: &Path, to: &Path) {
 fn copy_with_time(from: &Path, to: &Path) {
     fs::copy(from, to).expect("a copy");
     let time = fs::metadata(from).and_then(|file| file.modified()).expect("a time");
-    fs::File::options().write(true).open(to).and_then(|file| file.set_modified(time)).expect("the same time");
+    fs::File::options()
+        .write(true)
+        .open(to)
+        .and_then(|file| file.set_modified(time))
+        .expect("the same time");
 }
 
 /// What the workspace's `rayweave` prints, built in this environment; without a warning.
 fn run(workspace: &Path, environment: &[(&str, &Path)], arguments: &[&str]) -> String {
     let build = ["run", "--offline", "--quiet", "-p", "rayweave", "--"];
     let output = cargo(workspace, environment, &[&build, arguments].concat());
-    let (out, err) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    let (out, err) =
+        (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
     assert!(output.status.success(), "{arguments:?}: {out}{err}");
     assert_eq!(err, "", "{arguments:?}");
     out.into_owned()
@@ -141,7 +162,11 @@ fn the_steps_add_a_strategy() {
     fs::write(strategy.join("Cargo.toml"), manifest).expect("written");
     fs::write(strategy.join("src/lib.rs"), source).expect("written");
     insert(&workspace.join("Cargo.toml"), "# One line a strategy.", dependency.trim());
-    insert(&workspace.join("crates/registry/Cargo.toml"), "[dependencies]", member_dependency.trim());
+    insert(
+        &workspace.join("crates/registry/Cargo.toml"),
+        "[dependencies]",
+        member_dependency.trim(),
+    );
     // At the end of the slice.
     replace(&workspace.join("crates/registry/src/lib.rs"), "];", &format!("{registry_line}];"));
 
@@ -159,23 +184,38 @@ fn the_steps_add_a_strategy() {
 fn without_openmp(workspace: &Path) {
     use std::os::unix::fs::PermissionsExt;
     let compiler = workspace.join("cc-without-openmp");
-    let script = "#!/bin/sh\nfor word; do [ \"$word\" != -fopenmp ] || exit 1; done\nexec cc \"$@\"\n";
+    let script =
+        "#!/bin/sh\nfor word; do [ \"$word\" != -fopenmp ] || exit 1; done\nexec cc \"$@\"\n";
     fs::write(&compiler, script).expect("written");
     fs::set_permissions(&compiler, fs::Permissions::from_mode(0o755)).expect("permitted");
 
     let rayweave = |arguments: &[&str]| run(workspace, &[("CC", &compiler)], arguments);
     let list = rayweave(&["strategies"]);
-    let reason =
-        format!("built without OpenMP: the C compiler {} does not know -fopenmp", compiler.display());
+    let reason = format!(
+        "built without OpenMP: the C compiler {} does not know -fopenmp",
+        compiler.display()
+    );
     assert_eq!(list.matches(&reason).count(), 3, "{list}");
-    let named =
-        ["run", "--offline", "--quiet", "-p", "rayweave", "--", "render", "--strategy", "openmp-guided"];
+    let named = [
+        "run",
+        "--offline",
+        "--quiet",
+        "-p",
+        "rayweave",
+        "--",
+        "render",
+        "--strategy",
+        "openmp-guided",
+    ];
     let refused = cargo(workspace, &[("CC", &compiler)], &named);
     assert_eq!(refused.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&refused.stderr).contains(&format!("unavailable here: {reason}")));
+    assert!(
+        String::from_utf8_lossy(&refused.stderr).contains(&format!("unavailable here: {reason}"))
+    );
 
     let check = rayweave(&["check", "--size", "4x3", "--threads", "2", "--tile", "2"]);
     assert!(check.contains("all identical"), "{check}");
-    let left_out = "left out, since unavailable here: openmp-static, openmp-dynamic, openmp-guided ";
+    let left_out =
+        "left out, since unavailable here: openmp-static, openmp-dynamic, openmp-guided ";
     assert!(check.contains(left_out), "{check}");
 }

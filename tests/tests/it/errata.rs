@@ -22,7 +22,10 @@ fn rays_hit_where_they_should() {
         let normal = witness.primitive.normal(point);
         let turned = if normal.dot(witness.ray.direction) > 0.0 { -normal } else { normal };
         assert!((t / expected.t - 1.0).abs() < 1e-14, "{what}: {t}");
-        assert!(point.distance(expected.point) < 1e-14 * (1.0 + expected.point.length()), "{what}: {point}");
+        assert!(
+            point.distance(expected.point) < 1e-14 * (1.0 + expected.point.length()),
+            "{what}: {point}"
+        );
         assert!(turned.distance(expected.normal) < 1e-13, "{what}: {turned}");
     }
 }
@@ -32,11 +35,17 @@ fn witnesses_agree_with_themselves() {
     for witness in RAYS {
         let Some(expected) = witness.expected else { continue };
         let there = witness.ray.at(expected.t);
-        assert!(there.distance(expected.point) < 1e-14 * (1.0 + there.length()), "{}", witness.name);
+        assert!(
+            there.distance(expected.point) < 1e-14 * (1.0 + there.length()),
+            "{}",
+            witness.name
+        );
         assert!(expected.normal.is_normalized(), "{}", witness.name);
         assert!(expected.normal.dot(witness.ray.direction) <= 0.0, "{}", witness.name);
     }
-    for (name, square) in [("far wall through the open end", 20.0), ("plane's point far aside", 26.0)] {
+    for (name, square) in
+        [("far wall through the open end", 20.0), ("plane's point far aside", 26.0)]
+    {
         let distance = RAYS.iter().find(|witness| witness.name == name).and_then(|w| w.distance());
         assert!(distance.is_some_and(|d| (d * d - square).abs() < 1e-13), "{name}: {distance:?}");
     }
@@ -61,11 +70,9 @@ fn neighbours_share_their_samples() {
     let mut points = HashSet::new();
     for (i, j) in (0..height).flat_map(|j| (0..width).map(move |i| (i, j))) {
         let centre = (f64::from(i) + 0.5, f64::from(j) + 0.5);
-        points.extend(
-            offsets
-                .iter()
-                .map(|(dx, dy)| (2.0 * (centre.0 + dx)) as i32 * 4096 + (2.0 * (centre.1 + dy)) as i32),
-        );
+        points.extend(offsets.iter().map(|(dx, dy)| {
+            (2.0 * (centre.0 + dx)) as i32 * 4096 + (2.0 * (centre.1 + dy)) as i32
+        }));
     }
     assert_eq!(points.len() as u64, rays);
 }
@@ -111,7 +118,10 @@ fn the_tracer_s_rays_hit_where_they_should() {
         };
         let tolerance = tolerance(precision);
         assert!((hit.t / expected.t - 1.0).abs() < tolerance, "{what}: {hit:?}");
-        assert!(hit.point.distance(expected.point) < tolerance * expected.point.length(), "{what}: {hit:?}");
+        assert!(
+            hit.point.distance(expected.point) < tolerance * expected.point.length(),
+            "{what}: {hit:?}"
+        );
         assert!(hit.normal.distance(expected.normal) < tolerance, "{what}: {hit:?}");
         assert_eq!(hit.primitive, 0);
     }
@@ -121,13 +131,19 @@ fn the_tracer_s_rays_hit_where_they_should() {
 /// through the camera into a picture.
 #[test]
 fn the_tracer_s_colours_are_as_they_should() {
-    for (witness, precision) in shadings().iter().flat_map(|witness| PRECISIONS.map(|p| (witness, p))) {
+    for (witness, precision) in
+        shadings().iter().flat_map(|witness| PRECISIONS.map(|p| (witness, p)))
+    {
         let what = format!("{} in {precision}: {}", witness.name, witness.report);
         let expected = DVec3::from_array(witness.expected);
         let camera = witness.scene.camera;
         let view = camera.look_at - camera.position;
-        let seen = Caster::new(&witness.scene, precision).expect(&what).color(camera.position, view);
-        assert!(DVec3::from_array(seen).distance(expected) < tolerance(precision), "{what}: {seen:?}");
+        let seen =
+            Caster::new(&witness.scene, precision).expect(&what).color(camera.position, view);
+        assert!(
+            DVec3::from_array(seen).distance(expected) < tolerance(precision),
+            "{what}: {seen:?}"
+        );
         // Pictures are kept in `f32`.
         let picture = picture::of_scene(&witness.scene, 1, 1, precision);
         let pixel = DVec3::from_array(picture.pixels()[0].map(f64::from));

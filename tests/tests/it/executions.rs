@@ -70,8 +70,8 @@ fn every_density() {
     }
 }
 
-/// Catches a point that is interpolated in one tile and traced in another, where it is at an edge; and a lane whose
-/// trail is another one's.
+/// Catches a point that is interpolated in one tile and traced in another, where it is at an edge;
+/// and a lane whose trail is another one's.
 #[test]
 fn adaptive_samples() {
     for antialiasing in [1, 2, 3, 5] {
@@ -83,7 +83,8 @@ fn adaptive_samples() {
     }
 }
 
-/// Catches points that are interpolated across an edge, a shadow's or a mirror's, and none that are at all.
+/// Catches points that are interpolated across an edge, a shadow's or a mirror's, and none that are
+/// at all.
 #[test]
 fn adaptive_samples_are_near_the_lattice() {
     let mut scene = scenes::named("room");
@@ -97,7 +98,8 @@ fn adaptive_samples_are_near_the_lattice() {
     assert!(psnr >= 50.0, "{psnr} dB");
     assert!(found != full, "nothing is interpolated");
     // What is the same everywhere is interpolated without an error.
-    let empty = Scene { planes: vec![], spheres: vec![], triangles: vec![], cylinders: vec![], ..scene };
+    let empty =
+        Scene { planes: vec![], spheres: vec![], triangles: vec![], cylinders: vec![], ..scene };
     let picture = in_tiles(&empty, (20, 20), execution, 7);
     let lattice = Scene { render: RenderSettings { adaptive: false, ..empty.render }, ..empty };
     assert!(picture == in_tiles(&lattice, (20, 20), execution, 7));
@@ -113,13 +115,19 @@ fn small_and_narrow_pictures() {
         (scene.render.antialiasing, scene.render.adaptive) = (antialiasing, adaptive);
         for size in [(1, 1), (2, 1), (1, 2), (3, 5), (1, 40), (40, 1)] {
             for arithmetic in &ARITHMETICS[..2] {
-                executions_agree(&scene, size, *arithmetic, &format!("{size:?} with {antialiasing}"));
+                executions_agree(
+                    &scene,
+                    size,
+                    *arithmetic,
+                    &format!("{size:?} with {antialiasing}"),
+                );
             }
         }
     }
 }
 
-/// Catches samples that are lost where those of one pixel, or of a few, are more than are traced together.
+/// Catches samples that are lost where those of one pixel, or of a few, are more than are traced
+/// together.
 #[test]
 fn many_samples_a_pixel() {
     let mut scene = scenes::named("report");

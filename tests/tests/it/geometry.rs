@@ -158,7 +158,9 @@ fn reach(thing: &Primitive, point: DVec3) -> f64 {
     let own = match thing {
         Primitive::Plane(plane) => plane.point.abs(),
         Primitive::Sphere(sphere) => sphere.center.abs() + sphere.radius,
-        Primitive::Triangle(Triangle { vertices: [a, b, c], .. }) => a.abs().max(b.abs()).max(c.abs()),
+        Primitive::Triangle(Triangle { vertices: [a, b, c], .. }) => {
+            a.abs().max(b.abs()).max(c.abs())
+        }
         Primitive::Cylinder(cylinder) => cylinder.bottom.abs() + cylinder.radius,
     };
     thing.normal(point).abs().dot(point.abs() + own)
@@ -184,7 +186,8 @@ fn beyond_edge(thing: &Primitive, point: DVec3) -> f64 {
         Primitive::Plane(_) | Primitive::Sphere(_) => 0.0,
         Primitive::Triangle(Triangle { vertices: [a, b, c], .. }) => {
             let normal = thing.normal(point);
-            let outside = |from: DVec3, to: DVec3| (point - from).dot((to - from).cross(normal).normalize());
+            let outside =
+                |from: DVec3, to: DVec3| (point - from).dot((to - from).cross(normal).normalize());
             outside(*a, *b).max(outside(*b, *c)).max(outside(*c, *a)).max(0.0)
         }
         Primitive::Cylinder(Cylinder { bottom, top, .. }) => {
@@ -199,8 +202,8 @@ proptest! {
     #![proptest_config(config())]
 
     /// Catches a wrong root, a formula that cancels, and an error bound that is too small: what
-    /// mirrors and shadows start from is as near to the surface as the tracer counts on, 12 units of
-    /// roundoff of the numbers in it. Twice that for `f64`, in which this test itself rounds.
+    /// mirrors and shadows start from is as near to the surface as the tracer counts on, 12 units
+    /// of roundoff of the numbers in it. Twice that for `f64`, in which this test itself rounds.
     #[test]
     fn a_hit_lies_on_its_surface(
         thing in thing(),
@@ -250,7 +253,8 @@ proptest! {
     }
 
     /// Catches a kind or an entry that is left out, a wrong number, and a wrong order between equal
-    /// distances: the nearest hit is, to the bit, the first of the smallest `t` of all things alone.
+    /// distances: the nearest hit is, to the bit, the first of the smallest `t` of all things
+    /// alone.
     #[test]
     fn nothing_alone_is_nearer(
         things in things(),
@@ -496,22 +500,26 @@ fn radius(thing: &Primitive) -> Option<f64> {
 /// Whether the ray meets a tube's wall nearer than `margin` to a rim.
 fn at_rim(cylinder: &Cylinder, ray: &Ray, margin: f64) -> bool {
     let height = 1e6 * DVec3::Y;
-    let endless = Cylinder { bottom: cylinder.bottom - height, top: cylinder.top + height, ..*cylinder };
+    let endless =
+        Cylinder { bottom: cylinder.bottom - height, top: cylinder.top + height, ..*cylinder };
     let rims = [cylinder.bottom.y, cylinder.top.y];
-    let near =
-        |t: f64| rims.iter().any(|rim| (ray.at(t).y - rim).abs() < margin * (1.0 + ray.at(t).length()));
+    let near = |t: f64| {
+        rims.iter().any(|rim| (ray.at(t).y - rim).abs() < margin * (1.0 + ray.at(t).length()))
+    };
     model::cylinder_roots(&endless, ray).into_iter().flatten().any(near)
 }
 
 /// Whether a hit is so far from every edge and rim that another rounding also hits.
 fn clearly_inside(thing: &Primitive, point: DVec3, u: f64, ray: &Ray) -> bool {
     let cosine = thing.normal(point).dot(ray.direction.normalize()).abs();
-    let margin = 32.0 * u * (ray.origin.length() + 2.0 * point.length() + reach(thing, point)) / cosine;
+    let margin =
+        32.0 * u * (ray.origin.length() + 2.0 * point.length() + reach(thing, point)) / cosine;
     match thing {
         Primitive::Plane(_) | Primitive::Sphere(_) => true,
         Primitive::Triangle(Triangle { vertices: [a, b, c], .. }) => {
             let normal = thing.normal(point);
-            let inside = |from: DVec3, to: DVec3| (from - point).dot((to - from).cross(normal).normalize());
+            let inside =
+                |from: DVec3, to: DVec3| (from - point).dot((to - from).cross(normal).normalize());
             inside(*a, *b).min(inside(*b, *c)).min(inside(*c, *a)) > margin
         }
         Primitive::Cylinder(Cylinder { bottom, top, .. }) => {

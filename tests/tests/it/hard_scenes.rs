@@ -1,5 +1,5 @@
-//! The scenes that are hard for arithmetic, and the report's at every scale and place: each is drawn
-//! right in the precision that is chosen for it.
+//! The scenes that are hard for arithmetic, and the report's at every scale and place: each is
+//! drawn right in the precision that is chosen for it.
 
 use glam::DVec3;
 use rayweave_contract::Image;
@@ -37,7 +37,8 @@ const GOALS: [Goal; 11] = [
     goal("telephoto", Precision::F64),
 ];
 
-/// PSNR in dB, at least, against `f64` and against the model: a mean error of a quarter of a step of 8 bits.
+/// PSNR in dB, at least, against `f64` and against the model: a mean error of a quarter of a step
+/// of 8 bits.
 const ALIKE: f64 = 60.0;
 
 /// A picture in the chosen precision, in `f64` and of the model.
@@ -72,13 +73,16 @@ impl Drawn {
     /// Pixels that are plainly wrong amid others that are all alike in the model: no outline, no
     /// edge of a shadow excuses them.
     fn acne(&self) -> Vec<(u32, u32)> {
-        let (width, height) = (self.width as usize, self.chosen.pixels().len() / self.width as usize);
-        let apart = |a: [f64; 3], b: [f64; 3]| (0..3).map(|c| (a[c] - b[c]).abs()).fold(0.0, f64::max);
+        let (width, height) =
+            (self.width as usize, self.chosen.pixels().len() / self.width as usize);
+        let apart =
+            |a: [f64; 3], b: [f64; 3]| (0..3).map(|c| (a[c] - b[c]).abs()).fold(0.0, f64::max);
         let wrong = |index: &usize| {
             let (x, y) = (index % width, index / width);
             let right = self.truth[*index];
-            let around = (y.saturating_sub(1)..(y + 2).min(height))
-                .flat_map(|y| (x.saturating_sub(1)..(x + 2).min(width)).map(move |x| y * width + x));
+            let around = (y.saturating_sub(1)..(y + 2).min(height)).flat_map(|y| {
+                (x.saturating_sub(1)..(x + 2).min(width)).map(move |x| y * width + x)
+            });
             let alike = around.map(|i| apart(self.truth[i], right)).fold(0.0, f64::max) < 0.02;
             alike && apart(self.chosen.pixels()[*index].map(f64::from), right) > 0.04
         };

@@ -33,15 +33,18 @@ fn strategies_agree(name: &str, precision: Precision) {
         (work, right)
     });
     for strategy in rayweave_registry::available() {
-        for (threads, tile) in THREADS.iter().flat_map(|threads| TILES.map(|tile| (*threads, tile))) {
-            let context = format!("{name}: {}, {threads} threads, tiles of {tile}", strategy.name());
+        for (threads, tile) in THREADS.iter().flat_map(|threads| TILES.map(|tile| (*threads, tile)))
+        {
+            let context =
+                format!("{name}: {}, {threads} threads, tiles of {tile}", strategy.name());
             let plan = Plan {
                 threads: NonZeroUsize::new(threads).expect("not 0"),
                 tile: NonZeroU32::new(tile).expect("not 0"),
             };
             let mut renderer = strategy.prepare(plan).expect(&context);
             for (work, right) in &pictures {
-                let mut found = Image::filled(right.width(), right.height(), POISON).expect("a picture");
+                let mut found =
+                    Image::filled(right.width(), right.height(), POISON).expect("a picture");
                 renderer.render(&**work, &mut found).expect(&context);
                 assert_same(&found, right, &context);
             }
@@ -137,7 +140,9 @@ fn tiles_are_where_they_say() {
             let mut rows = 0;
             for (y, row) in tile.rows() {
                 assert_eq!((y, row.len() as u32), (top + rows, width));
-                (left..).zip(row).for_each(|(x, color)| *color = [x as f32, y as f32, color[2] + 1.0]);
+                (left..)
+                    .zip(row)
+                    .for_each(|(x, color)| *color = [x as f32, y as f32, color[2] + 1.0]);
                 rows += 1;
             }
             assert_eq!(rows, height);
@@ -160,9 +165,12 @@ fn tiles_are_where_they_say() {
 fn assert_same(found: &Image, right: &Image, context: &str) {
     let bits = |color: &Rgb| color.map(f32::to_bits);
     let pairs = found.pixels().iter().zip(right.pixels()).enumerate();
-    let different: Vec<_> = pairs.filter(|(_, (found, right))| bits(found) != bits(right)).collect();
+    let different: Vec<_> =
+        pairs.filter(|(_, (found, right))| bits(found) != bits(right)).collect();
     if let Some((index, (found, expected))) = different.first() {
         let (count, position) = (different.len(), right.position(*index));
-        panic!("{context}: {count} pixels differ, the first at {position:?}: {found:?}, not {expected:?}");
+        panic!(
+            "{context}: {count} pixels differ, the first at {position:?}: {found:?}, not {expected:?}"
+        );
     }
 }

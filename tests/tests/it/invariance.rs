@@ -43,7 +43,11 @@ fn a_mirrored_scene_is_a_mirrored_picture() {
         let right = flipped(&of_scene(&scene, WIDTH, HEIGHT, precision));
         let mirrored = [mirrored::<0>(&scene), mirrored::<1>(&scene), mirrored::<2>(&scene)];
         for (axis, scene) in ["x", "y", "z"].iter().zip(&mirrored) {
-            assert_eq!(of_scene(scene, WIDTH, HEIGHT, precision), right, "{name} in {precision}, {axis}");
+            assert_eq!(
+                of_scene(scene, WIDTH, HEIGHT, precision),
+                right,
+                "{name} in {precision}, {axis}"
+            );
         }
     }
 }

@@ -16,7 +16,8 @@ const BLUE: usize = 2;
 
 /// No thing and no light, three materials that are seen without light, a grey background.
 fn empty() -> Scene {
-    let glowing = |color| Material { ambient: 1.0, diffuse: 0.0, specular: 0.0, ..Material::new(color) };
+    let glowing =
+        |color| Material { ambient: 1.0, diffuse: 0.0, specular: 0.0, ..Material::new(color) };
     Scene {
         camera: Camera {
             position: DVec3::ZERO,
@@ -94,7 +95,10 @@ fn the_screen_has_its_corners_where_they_belong() {
     // To -z, 2 away, 4 wide and so 3 high; to the right is +x, up is +y.
     let camera = empty().camera;
     for (x, y, corner) in [(0.0, 0.0, [-2.0, 1.5, -2.0]), (8.0, 6.0, [2.0, -1.5, -2.0])] {
-        assert_close(primary_ray(&camera, x, y, 8, 6).direction, DVec3::from_array(corner).normalize());
+        assert_close(
+            primary_ray(&camera, x, y, 8, 6).direction,
+            DVec3::from_array(corner).normalize(),
+        );
     }
     // The centre of pixel (0, 0), the top left one.
     let expected = DVec3::new(-1.75, 1.25, -2.0).normalize();
@@ -136,7 +140,10 @@ fn a_sphere_has_two_roots() {
     let sphere = ball([0.0, 0.0, -5.0], 2.0, RED);
     assert_eq!(sphere_roots(&sphere, &ray([0.0; 3], [0.0, 0.0, -1.0])), [Some(3.0), Some(7.0)]);
     assert_eq!(sphere_roots(&sphere, &ray([0.0; 3], [0.0, 0.0, -2.0])), [Some(1.5), Some(3.5)]);
-    assert_eq!(sphere_roots(&sphere, &ray([0.0, 0.0, -6.0], [0.0, 0.0, -1.0])), [Some(-3.0), Some(1.0)]);
+    assert_eq!(
+        sphere_roots(&sphere, &ray([0.0, 0.0, -6.0], [0.0, 0.0, -1.0])),
+        [Some(-3.0), Some(1.0)]
+    );
 }
 
 #[test]
@@ -169,7 +176,9 @@ fn a_triangle_includes_its_edges_and_corners() {
     let flipped = Triangle { vertices: [a, c, b], material: RED };
     for triangle in [triangle, flipped] {
         let at = |x: f64, y: f64| triangle_root(&triangle, &ray([x, y, 2.0], [0.0, 0.0, -1.0]));
-        for (x, y) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (0.5, 0.5), (0.0, 0.5), (0.5, 0.0), (0.25, 0.25)] {
+        for (x, y) in
+            [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (0.5, 0.5), (0.0, 0.5), (0.5, 0.0), (0.25, 0.25)]
+        {
             assert_eq!(at(x, y), Some(2.0), "({x}, {y})");
         }
         for (x, y) in [(-0.001, 0.5), (0.5, -0.001), (0.501, 0.5), (1.001, 0.0), (-1.0, -1.0)] {
@@ -188,7 +197,10 @@ fn the_far_wall_is_seen_through_the_open_end() {
     assert_eq!(seen(&scene, through.origin, through.direction), DVec3::X);
     // The height's bounds belong to the wall.
     for y in [0.0, 1.0] {
-        assert_eq!(cylinder_roots(&tube, &ray([-3.0, y, 0.0], [1.0, 0.0, 0.0])), [Some(2.0), Some(4.0)]);
+        assert_eq!(
+            cylinder_roots(&tube, &ray([-3.0, y, 0.0], [1.0, 0.0, 0.0])),
+            [Some(2.0), Some(4.0)]
+        );
     }
     for y in [-0.001, 1.001] {
         assert_eq!(cylinder_roots(&tube, &ray([-3.0, y, 0.0], [1.0, 0.0, 0.0])), [None; 2]);
@@ -199,7 +211,11 @@ fn the_far_wall_is_seen_through_the_open_end() {
 fn the_nearest_hit_is_in_front() {
     let scene = Scene {
         spheres: vec![ball([0.0, 0.0, 3.0], 1.0, RED), ball([0.0, 0.0, -9.0], 1.0, GREEN)],
-        planes: vec![Plane { point: DVec3::new(0.0, 0.0, -20.0), normal: DVec3::Z, material: BLUE }],
+        planes: vec![Plane {
+            point: DVec3::new(0.0, 0.0, -20.0),
+            normal: DVec3::Z,
+            material: BLUE,
+        }],
         ..empty()
     };
     assert_eq!(seen(&scene, [0.0; 3], [0.0, 0.0, -1.0]), DVec3::Y);
@@ -209,7 +225,8 @@ fn the_nearest_hit_is_in_front() {
 #[test]
 fn a_ray_does_not_hit_what_it_starts_on() {
     // t = 0 is no hit, the other root is one.
-    let scene = Scene { spheres: vec![ball([0.0; 3], 1.0, RED)], planes: vec![floor(GREEN)], ..empty() };
+    let scene =
+        Scene { spheres: vec![ball([0.0; 3], 1.0, RED)], planes: vec![floor(GREEN)], ..empty() };
     assert_eq!(seen(&scene, [0.0, 0.0, 0.0], [0.0, 1.0, 0.0]), DVec3::X);
     assert_eq!(seen(&scene, [1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]), DVec3::X);
     assert_eq!(seen(&scene, [1.0, 0.0, 0.0], [1.0, 0.1, 0.0]), DVec3::splat(0.5));
@@ -221,7 +238,8 @@ fn equal_distances_go_to_the_first_kind_then_to_the_first_in_the_file() {
     let plane = |material| Plane { point: DVec3::new(0.0, 0.0, -2.0), normal: DVec3::Z, material };
     let sphere = |material| ball([0.0, 0.0, -3.0], 1.0, material);
     let triangle = |material| {
-        let vertices = [[-1.0, -1.0, -2.0], [1.0, -1.0, -2.0], [0.0, 1.0, -2.0]].map(DVec3::from_array);
+        let vertices =
+            [[-1.0, -1.0, -2.0], [1.0, -1.0, -2.0], [0.0, 1.0, -2.0]].map(DVec3::from_array);
         Triangle { vertices, material }
     };
     let cylinder = |material| tube([0.0, -1.0, -3.0], 2.0, 1.0, material);
@@ -335,8 +353,9 @@ fn the_inside_of_a_sphere_is_lit_from_inside() {
 fn a_shadow_falls_between_point_and_light_only() {
     let scene = lit_floor(Material { ambient: 0.25, diffuse: 1.0, ..dark() });
     let (lit, hidden) = ([1.25, 0.625, 0.0], [0.25, 0.125, 0.0]);
-    let with =
-        |sphere| seen(&Scene { spheres: vec![sphere], ..scene.clone() }, [4.0, 3.0, 0.0], [-0.8, -0.6, 0.0]);
+    let with = |sphere| {
+        seen(&Scene { spheres: vec![sphere], ..scene.clone() }, [4.0, 3.0, 0.0], [-0.8, -0.6, 0.0])
+    };
     assert_close(with(ball([0.0, 5.0, 0.0], 1.0, 0)), hidden);
     // Beyond the light, behind the point, beside.
     assert_close(with(ball([0.0, 12.0, 0.0], 1.0, 0)), lit);
@@ -388,7 +407,8 @@ fn mirror(reflection: f64, max_reflections: u32) -> Scene {
     let mut scene = empty();
     scene.render.max_reflections = max_reflections;
     scene.materials[RED].reflection = reflection;
-    scene.planes = vec![floor(RED), Plane { point: 10.0 * DVec3::X, normal: DVec3::X, material: GREEN }];
+    scene.planes =
+        vec![floor(RED), Plane { point: 10.0 * DVec3::X, normal: DVec3::X, material: GREEN }];
     scene
 }
 
@@ -432,7 +452,10 @@ fn a_mirrored_ray_leaves_the_point() {
     scene.render.max_reflections = 3;
     scene.materials[RED].reflection = 0.5;
     // Around a square: four hits, the last one's mirror beyond the limit.
-    assert_close(seen(&scene, [half, 0.0, 0.0], [0.0, -1.0, 0.0]), [1.0 - 0.5f64.powi(4), 0.0, 0.0]);
+    assert_close(
+        seen(&scene, [half, 0.0, 0.0], [0.0, -1.0, 0.0]),
+        [1.0 - 0.5f64.powi(4), 0.0, 0.0],
+    );
 }
 
 // Anti-aliasing
@@ -478,7 +501,8 @@ fn samples_outside_the_picture_are_traced() {
     scene.render = RenderSettings { background: DVec3::ZERO, antialiasing: 1, ..scene.render };
     // Sample columns lie at x = -2, 0 and 2 on the screen of 4 wide, at z = -2.
     scene.triangles = vec![Triangle {
-        vertices: [[-1.5, -99.0, -1.0], [-1.5, 99.0, -1.0], [-0.9, 0.0, -1.0]].map(DVec3::from_array),
+        vertices: [[-1.5, -99.0, -1.0], [-1.5, 99.0, -1.0], [-0.9, 0.0, -1.0]]
+            .map(DVec3::from_array),
         material: RED,
     }];
     scene.camera.screen_width = 4.0;
@@ -502,7 +526,10 @@ fn hits_lie_on_the_surface() {
             let Some((t, primitive)) = model.first(&ray) else { continue };
             let point = ray.at(t);
             let size = 1.0 + point.length() + ray.origin.length();
-            assert!(off_surface(primitive, point) < 1e-12 * size, "seed {seed}: {primitive:?} at {point}");
+            assert!(
+                off_surface(primitive, point) < 1e-12 * size,
+                "seed {seed}: {primitive:?} at {point}"
+            );
             assert!(primitive.normal(point).is_normalized());
         }
     }
@@ -521,7 +548,8 @@ fn off_surface(primitive: &Primitive, point: DVec3) -> f64 {
             // The areas of the three parts add up to the whole only within it.
             let area = |a: DVec3, b: DVec3, c: DVec3| (b - a).cross(c - a).length();
             let whole = area(*a, *b, *c);
-            (area(point, *a, *b) + area(point, *b, *c) + area(point, *c, *a) - whole).abs() / whole.sqrt()
+            (area(point, *a, *b) + area(point, *b, *c) + area(point, *c, *a) - whole).abs()
+                / whole.sqrt()
         }
     }
 }

@@ -55,14 +55,16 @@ fn from_afar(distance: f64) -> Scene {
 /// forgotten in the extent, a distance to the wrong point of a thing.
 #[test]
 fn every_kind_makes_its_demand() {
-    let plane = |point| Plane { point: DVec3::from_array(point), normal: 9.0 * DVec3::Y, material: 0 };
+    let plane =
+        |point| Plane { point: DVec3::from_array(point), normal: 9.0 * DVec3::Y, material: 0 };
     let tall = Cylinder {
         bottom: DVec3::new(3.0, -40.0, -4.0),
         top: DVec3::new(3.0, 3.0, -4.0),
         radius: 0.25,
         material: 0,
     };
-    let low = Cylinder { bottom: DVec3::new(0.0, 2.0, 0.0), top: DVec3::new(0.0, 3.0, 0.0), ..tall };
+    let low =
+        Cylinder { bottom: DVec3::new(0.0, 2.0, 0.0), top: DVec3::new(0.0, 3.0, 0.0), ..tall };
     let corners = |y: f64| [[-3.0, y, -4.0], [6.0, y, -4.0], [-3.0, y, 4.0]].map(DVec3::from_array);
     let triangle = |vertices| Triangle { vertices, material: 0 };
     let aside = corners(0.0).map(|corner| corner + DVec3::new(6.0, 0.0, 0.0));
@@ -76,9 +78,23 @@ fn every_kind_makes_its_demand() {
     let cases = [
         ("nothing", empty(), 4.0, 1.0, f64::INFINITY, 1.0),
         ("the eye", eye.clone(), 4.0, 1.0, 7.0, 7.0),
-        ("a plane", of_planes(vec![plane([100.0, 2.0, -8.0])]), 24.0 * 2.0 + 8.0, 2.0, 100.0, 100.0),
+        (
+            "a plane",
+            of_planes(vec![plane([100.0, 2.0, -8.0])]),
+            24.0 * 2.0 + 8.0,
+            2.0,
+            100.0,
+            100.0,
+        ),
         ("a sphere", ball([-3.0, 0.0, 4.0], 0.5), 24.0 * 4.0 + 4.5 + 18.0, 4.5, 0.5, 4.5),
-        ("a sphere around the eye", ball([-3.0, 0.0, 4.0], 7.0), 24.0 * 7.0 + 11.0 + 8.0, 2.0, 7.0, 11.0),
+        (
+            "a sphere around the eye",
+            ball([-3.0, 0.0, 4.0], 7.0),
+            24.0 * 7.0 + 11.0 + 8.0,
+            2.0,
+            7.0,
+            11.0,
+        ),
         // Below its middle, the eye's height counts; beside it, the distance to a corner.
         ("a triangle", of_triangle(corners(-2.0)), 24.0 * 2.0 + 6.0 + 8.0, 2.0, 6.0, 6.0),
         ("a triangle aside", of_triangle(aside), 12.0 + 12.0, 3.0, 12.0, 12.0),
@@ -143,7 +159,8 @@ fn curved_mirrors_take_digits() {
     let mirrors = |reflections: [f64; 4]| {
         let mut scene = scenes::named("report");
         scene.materials.truncate(1);
-        scene.materials = reflections.map(|reflection| Material { reflection, ..scene.materials[0] }).into();
+        scene.materials =
+            reflections.map(|reflection| Material { reflection, ..scene.materials[0] }).into();
         scene.planes.iter_mut().for_each(|plane| plane.material = 0);
         scene.spheres.iter_mut().for_each(|sphere| sphere.material = 1);
         scene.triangles.iter_mut().for_each(|triangle| triangle.material = 2);
@@ -186,7 +203,9 @@ fn lights_and_materials_count_by_their_range() {
         ("specular", |scene, x| scene.materials[0].specular = x),
     ];
     for (what, change) in changes {
-        for (x, expected) in [(1e8, Precision::F32), (1e10, Precision::F64), (1e300, Precision::F64)] {
+        for (x, expected) in
+            [(1e8, Precision::F32), (1e10, Precision::F64), (1e300, Precision::F64)]
+        {
             let mut scene = scenes::named("report");
             change(&mut scene, x);
             assert_eq!(chosen(&scene), expected, "{what} of {x:e}");
@@ -251,8 +270,9 @@ fn agreement(scene: &Scene) -> [f64; 2] {
     let mut scene = scene.clone();
     scene.render.antialiasing = 1;
     let truth = model::render(&scene, WIDTH, HEIGHT);
-    [Precision::F32, Precision::F64]
-        .map(|precision| metrics::psnr(&truth, &picture::of_scene(&scene, WIDTH, HEIGHT, precision)))
+    [Precision::F32, Precision::F64].map(|precision| {
+        metrics::psnr(&truth, &picture::of_scene(&scene, WIDTH, HEIGHT, precision))
+    })
 }
 
 /// What the chosen precision has to reach. Above 60 dB a single sample decides, here one that
@@ -279,7 +299,10 @@ fn the_chosen_precision_is_enough() {
             assert_enough(&format!("{name}, {scale:e} times as large"), &enlarged(&scene, scale));
         }
         for offset in [100.0, 500.0, 1e3, 1e4, 1e5, 1e6] {
-            assert_enough(&format!("{name}, moved by {offset}"), &moved(&scene, DVec3::splat(offset)));
+            assert_enough(
+                &format!("{name}, moved by {offset}"),
+                &moved(&scene, DVec3::splat(offset)),
+            );
         }
     }
     for radius in [100.0, 1e4, 1e6] {
@@ -302,7 +325,10 @@ fn f64_is_chosen_for_a_reason() {
         ("minute", enlarged(&report, 1e-25)),
     ] {
         let [narrow, wide] = agreement(&scene);
-        assert!(narrow < ENOUGH && wide >= ENOUGH, "{what}: {narrow:.1} dB in f32, {wide:.1} dB in f64");
+        assert!(
+            narrow < ENOUGH && wide >= ENOUGH,
+            "{what}: {narrow:.1} dB in f32, {wide:.1} dB in f64"
+        );
     }
 }
 

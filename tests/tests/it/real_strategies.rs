@@ -15,8 +15,12 @@ const THREADS: [usize; 6] = [1, 2, 3, 5, 8, 64];
 #[test]
 fn the_real_strategies_agree() {
     let sizes = [(1, 1), (1, 500), (500, 1), (7, 3), (97, 61)];
-    let case =
-        |(width, height)| Case { name: "gradient".to_owned(), width, height, work: Box::new(Gradient) };
+    let case = |(width, height)| Case {
+        name: "gradient".to_owned(),
+        width,
+        height,
+        work: Box::new(Gradient),
+    };
     let check = Check {
         reference: reference(),
         strategies: &available(),
@@ -62,7 +66,8 @@ fn survives(strategy: &dyn Strategy, threads: NonZeroUsize) {
     let mut renderer = strategy.prepare(Plan { threads, tile: tile(8) }).expect(&context);
     let mut image = Image::new(97, 61).expect("a picture");
     for (x, y) in [(0, 0), (50, 30), (96, 60)] {
-        let error = renderer.render(&Panics { work: Gradient, x, y }, &mut image).expect_err(&context);
+        let error =
+            renderer.render(&Panics { work: Gradient, x, y }, &mut image).expect_err(&context);
         let StrategyError::Panicked { strategy: name, tile, message } = error else {
             panic!("{context}: {error}");
         };
@@ -72,7 +77,10 @@ fn survives(strategy: &dyn Strategy, threads: NonZeroUsize) {
         image.fill([0.0; 3]);
         renderer.render(&Gradient, &mut image).expect(&context);
         let right = (0..61).flat_map(|y| (0..97).map(move |x| Gradient::color(x, y)));
-        assert!(image.pixels().iter().copied().eq(right), "{context}: a wrong picture after the panic");
+        assert!(
+            image.pixels().iter().copied().eq(right),
+            "{context}: a wrong picture after the panic"
+        );
     }
 }
 

@@ -1,13 +1,15 @@
-//! What planes keep apart and what cones and enclosures leave out changes no picture: in scenes of a few primitives
-//! the search has the bits of trying everything, also where eyes and lights stand in planes, on
-//! surfaces and inside of things, and where rays run along them.
+//! What planes keep apart and what cones and enclosures leave out changes no picture: in scenes of
+//! a few primitives the search has the bits of trying everything, also where eyes and lights stand
+//! in planes, on surfaces and inside of things, and where rays run along them.
 
 use glam::DVec3;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use rayweave_contract::Image;
-use rayweave_core::scene::{Camera, Cylinder, Light, Material, Plane, RenderSettings, Sphere, Triangle};
+use rayweave_core::scene::{
+    Camera, Cylinder, Light, Material, Plane, RenderSettings, Sphere, Triangle,
+};
 use rayweave_core::{Execution, Lanes, Precision, Scene, Search};
 use rayweave_tests::picture::{difference, in_tiles, plain};
 use rayweave_tests::transform::{enlarged, moved};
@@ -69,7 +71,8 @@ fn camera(position: DVec3, look_at: DVec3) -> Camera {
 
 /// Before a floor with one of each bounded primitive; number 1 of the materials is a mirror.
 fn scene() -> Scene {
-    let material = |color, reflection| Material { specular: 0.5, reflection, ..Material::new(color) };
+    let material =
+        |color, reflection| Material { specular: 0.5, reflection, ..Material::new(color) };
     Scene {
         camera: camera(v(0.5, 1.0, -5.0), v(0.0, 0.5, 0.0)),
         render: RenderSettings {
@@ -109,7 +112,8 @@ fn assert_agrees_everywhere(scene: &Scene, name: &str) {
 }
 
 /// Catches a side that is told of an eye or a light in the plane itself, by rounding: with the eye
-/// there, nothing is on either side; a light there lights nothing of the plane, and the plane hides it.
+/// there, nothing is on either side; a light there lights nothing of the plane, and the plane hides
+/// it.
 #[test]
 fn eye_and_light_in_a_plane() {
     let tilted = v(0.3, 1.0, -0.2);
@@ -152,20 +156,27 @@ fn a_light_behind_a_plane_lights_nothing() {
             with.lights.insert(0, light(behind));
             assert_agrees_everywhere(&with, &format!("{distance} behind {normal}"));
             if distance < 1.0 {
-                // At the third place that is within the rounding of `f32`: the light may stand in the plane.
+                // At the third place that is within the rounding of `f32`: the light may stand in
+                // the plane.
                 continue;
             }
             for (with, without) in placed(&with).iter().zip(placed(&without)) {
                 for precision in PRECISIONS {
-                    let [found, right] = [with, &without].map(|scene| picture(scene, precision.into()));
-                    assert_eq!(difference(&found, &right), None, "{distance} behind {normal}, {precision}");
+                    let [found, right] =
+                        [with, &without].map(|scene| picture(scene, precision.into()));
+                    assert_eq!(
+                        difference(&found, &right),
+                        None,
+                        "{distance} behind {normal}, {precision}"
+                    );
                 }
             }
         }
     }
 }
 
-/// Catches a cone around a primitive that has no outside: eyes and lights in it, on it, at its middle.
+/// Catches a cone around a primitive that has no outside: eyes and lights in it, on it, at its
+/// middle.
 #[test]
 fn eye_and_light_in_and_on_things() {
     let scene = scene();
@@ -208,7 +219,9 @@ fn things_that_cut_planes() {
         for distance in [-1.0, -0.5, 0.0, 0.25, 1.0] {
             let mut scene = scene();
             scene.lights.extend([light(v(-3.0, -6.0, 1.0)), light(v(0.0, 2.0, 7.0))]);
-            scene.planes.push(plane(scene.spheres[0].center + distance * normal.normalize(), normal));
+            scene
+                .planes
+                .push(plane(scene.spheres[0].center + distance * normal.normalize(), normal));
             assert_agrees_everywhere(&scene, &format!("a sphere, {normal}, {distance}"));
             scene.planes[1].point = scene.triangles[0].vertices[2] - distance * normal.normalize();
             assert_agrees_everywhere(&scene, &format!("a triangle, {normal}, {distance}"));
@@ -225,12 +238,16 @@ fn planes_that_cut_each_other() {
     let walls = [DVec3::X, DVec3::Y, DVec3::Z].map(|normal| [normal, -normal]);
     let room = walls.as_flattened().iter().map(|&normal| plane(-6.0 * normal, normal)).collect();
     let twice = vec![plane(-DVec3::Y, DVec3::Y), plane(-DVec3::Y, -3.0 * DVec3::Y)];
-    let crossing = vec![plane(DVec3::ZERO, v(0.1, 1.0, 0.0)), plane(DVec3::ZERO, v(-0.1, 1.0, 0.0))];
-    for (name, planes) in [("wedge", wedge), ("room", room), ("twice", twice), ("crossing", crossing)] {
+    let crossing =
+        vec![plane(DVec3::ZERO, v(0.1, 1.0, 0.0)), plane(DVec3::ZERO, v(-0.1, 1.0, 0.0))];
+    for (name, planes) in
+        [("wedge", wedge), ("room", room), ("twice", twice), ("crossing", crossing)]
+    {
         for eye in [v(0.0, 1.0, -5.0), v(-5.0, 1.0, -1.0), v(1.0, -5.0, 0.5), v(0.25, 0.5, -3.0)] {
             let mut scene = Scene { planes: planes.clone(), ..scene() };
             scene.camera = camera(eye, v(0.0, 0.5, 0.0));
-            let corners = [v(0.0, 5.0, 0.0), v(5.0, 0.5, -1.0), v(-5.0, 0.0, 1.0), v(0.5, -5.0, 0.0)];
+            let corners =
+                [v(0.0, 5.0, 0.0), v(5.0, 0.5, -1.0), v(-5.0, 0.0, 1.0), v(0.5, -5.0, 0.0)];
             scene.lights = corners.map(light).into();
             assert_agrees_everywhere(&scene, &format!("{name} from {eye}"));
         }
@@ -256,7 +273,10 @@ fn small_things_next_to_a_light() {
             };
             let things = [
                 Scene { spheres: vec![sphere(center, radius)], ..nothing.clone() },
-                Scene { triangles: vec![triangle(corners.map(|c| center + radius * c))], ..nothing.clone() },
+                Scene {
+                    triangles: vec![triangle(corners.map(|c| center + radius * c))],
+                    ..nothing.clone()
+                },
                 Scene {
                     cylinders: vec![cylinder(center - radius * DVec3::Y, 2.0 * radius, radius)],
                     ..nothing
@@ -298,8 +318,16 @@ fn rays_along_things() {
             scene.camera.screen_width = thin;
             scene.planes.push(plane(v(0.0, 0.0, 1.0), DVec3::Z));
             // Upright and lying, as the axes are.
-            scene.triangles.push(triangle([v(-2.0, 0.0, -1.0), v(0.0, 0.0, -1.0), v(-2.0, 3.0, -1.0)]));
-            scene.triangles.push(triangle([v(-3.0, 1.0, -3.0), v(3.0, 1.0, -3.0), v(0.0, 1.0, 3.0)]));
+            scene.triangles.push(triangle([
+                v(-2.0, 0.0, -1.0),
+                v(0.0, 0.0, -1.0),
+                v(-2.0, 3.0, -1.0),
+            ]));
+            scene.triangles.push(triangle([
+                v(-3.0, 1.0, -3.0),
+                v(3.0, 1.0, -3.0),
+                v(0.0, 1.0, 3.0),
+            ]));
             assert_agrees_everywhere(&scene, &format!("from {from} to {to}, {thin} wide"));
             // A tree's boxes as well.
             let copies = (0..12).map(|i| sphere(v(-1.0, 0.0, f64::from(i)), 1.0));
@@ -309,8 +337,9 @@ fn rays_along_things() {
     }
 }
 
-/// Catches cones around another point than the eye's image: small things far away, seen in floors and tilted mirrors
-/// near the eye and far from it, and mirrors whose normal is so long or short that its square is no number.
+/// Catches cones around another point than the eye's image: small things far away, seen in floors
+/// and tilted mirrors near the eye and far from it, and mirrors whose normal is so long or short
+/// that its square is no number.
 #[test]
 fn small_things_in_mirrors() {
     for (i, (point, normal)) in [
@@ -325,7 +354,9 @@ fn small_things_in_mirrors() {
         let mut scene = scene();
         for step in 0..6 {
             let along = f64::from(step);
-            scene.spheres.push(sphere(v(along - 2.0, 0.4 * along, -2.0 - 3.0 * along), 0.05 + 0.2 * along));
+            scene
+                .spheres
+                .push(sphere(v(along - 2.0, 0.4 * along, -2.0 - 3.0 * along), 0.05 + 0.2 * along));
             scene.triangles.push(triangle([
                 v(along - 3.0, 1.0, 3.0 - 5.0 * along),
                 v(along - 2.6, 1.0, 3.0 - 5.0 * along),

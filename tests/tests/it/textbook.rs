@@ -1,4 +1,5 @@
-//! The textbook's formulas are right, if inexact: nobody would be helped by a comparison with wrong ones.
+//! The textbook's formulas are right, if inexact: nobody would be helped by a comparison with wrong
+//! ones.
 
 use glam::DVec3;
 use rayweave_core::scene::{Cylinder, Plane, Sphere, Triangle};
@@ -14,7 +15,10 @@ fn v(x: f64, y: f64, z: f64) -> DVec3 {
 }
 
 fn t(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<f64> {
-    Caster::new(scene, TEXTBOOK).expect("a sound scene").nearest_hit(origin, direction).map(|hit| hit.t)
+    Caster::new(scene, TEXTBOOK)
+        .expect("a sound scene")
+        .nearest_hit(origin, direction)
+        .map(|hit| hit.t)
 }
 
 /// One thing of each kind, each across -z at a distance of `z` from 0.
@@ -35,7 +39,10 @@ fn ahead(z: f64) -> [(&'static str, Scene); 4] {
                 ..empty()
             },
         ),
-        ("triangle", Scene { triangles: vec![Triangle { vertices: corners, material: 0 }], ..empty() }),
+        (
+            "triangle",
+            Scene { triangles: vec![Triangle { vertices: corners, material: 0 }], ..empty() },
+        ),
         (
             "cylinder",
             Scene {
@@ -58,7 +65,8 @@ fn random_scenes_agree() {
         let mut scene = random_scene(seed);
         scene.render.antialiasing = 0;
         let work = tracer(&scene, 48, 36, TEXTBOOK).expect("a sound scene");
-        let psnr = metrics::psnr(&model::render(&scene, 48, 36), &picture::pixel_by_pixel(&*work, 48, 36));
+        let psnr =
+            metrics::psnr(&model::render(&scene, 48, 36), &picture::pixel_by_pixel(&*work, 48, 36));
         assert!(psnr >= 35.0, "seed {seed}: {psnr:.1} dB");
     }
 }
@@ -94,9 +102,11 @@ fn both_families_hit_the_same() {
             let within = a + (b - a) * share.x.abs() + (c - a) * share.y.abs();
             let target = if scene.triangles.is_empty() { a + (b - c) / 4.0 } else { within };
             let (origin, direction) = (d, target - d);
-            let robust =
-                Caster::new(scene, Precision::F64).expect("a sound scene").nearest_hit(origin, direction);
-            let found = Caster::new(scene, TEXTBOOK).expect("a sound scene").nearest_hit(origin, direction);
+            let robust = Caster::new(scene, Precision::F64)
+                .expect("a sound scene")
+                .nearest_hit(origin, direction);
+            let found =
+                Caster::new(scene, TEXTBOOK).expect("a sound scene").nearest_hit(origin, direction);
             if robust.is_some_and(|hit| hit.t < 2e-3) {
                 continue;
             }
@@ -118,7 +128,10 @@ fn hits_nearer_than_the_offset_do_not_count() {
         assert!(t(&scene, DVec3::ZERO, -DVec3::Z).is_none_or(|t| t > 1.9), "{what}");
     }
     for (what, scene) in ahead(2e-3) {
-        assert!(t(&scene, DVec3::ZERO, -DVec3::Z).is_some_and(|t| (t - 2e-3).abs() < 1e-9), "{what}");
+        assert!(
+            t(&scene, DVec3::ZERO, -DVec3::Z).is_some_and(|t| (t - 2e-3).abs() < 1e-9),
+            "{what}"
+        );
     }
     assert_eq!(t(&ahead(5e-4)[0].1, DVec3::ZERO, -DVec3::Z), None);
 }
@@ -136,8 +149,10 @@ fn edges_belong_to_the_thing() {
 /// Catches a shadow ray that ends at or beyond the light.
 #[test]
 fn what_is_within_the_offset_of_a_light_hides_nothing() {
-    let mut scene =
-        Scene { planes: vec![Plane { point: DVec3::ZERO, normal: DVec3::Y, material: 0 }], ..empty() };
+    let mut scene = Scene {
+        planes: vec![Plane { point: DVec3::ZERO, normal: DVec3::Y, material: 0 }],
+        ..empty()
+    };
     scene.lights.truncate(1);
     scene.lights[0].position = v(0.0, 4.0, 0.0);
     let color = |scene: &Scene| {
@@ -145,7 +160,10 @@ fn what_is_within_the_offset_of_a_light_hides_nothing() {
     };
     let lit = color(&scene);
     let ceiling = |y| Scene {
-        planes: vec![scene.planes[0], Plane { point: v(0.0, y, 0.0), normal: DVec3::Y, material: 0 }],
+        planes: vec![
+            scene.planes[0],
+            Plane { point: v(0.0, y, 0.0), normal: DVec3::Y, material: 0 },
+        ],
         ..scene.clone()
     };
     assert_eq!(color(&ceiling(4.0 - 5e-4)), lit);

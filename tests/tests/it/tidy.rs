@@ -40,7 +40,9 @@ fn manifests() -> Vec<(String, String)> {
 fn contract_and_core_touch_nothing_of_the_machine() {
     let sources = ["crates/contract/src", "crates/core/src"].map(|folder| files(folder, ".rs"));
     for (name, text) in sources.into_iter().flatten() {
-        for word in ["thread::", "fs::", "time::", "net::", "env::", "process::", "println!", "mul_add"] {
+        for word in
+            ["thread::", "fs::", "time::", "net::", "env::", "process::", "println!", "mul_add"]
+        {
             assert!(!text.contains(word), "{name}: {word}");
         }
     }
@@ -49,7 +51,8 @@ fn contract_and_core_touch_nothing_of_the_machine() {
 /// Strategies, simulation and measurement know the contract, not the tracer.
 #[test]
 fn nothing_between_contract_and_accuracy_depends_on_the_tracer() {
-    let below = ["contract", "thread-team", "rayon-pool", "strategies", "registry", "predict", "measure"];
+    let below =
+        ["contract", "thread-team", "rayon-pool", "strategies", "registry", "predict", "measure"];
     for (name, text) in manifests() {
         let apart = below.iter().any(|folder| name.starts_with(&format!("crates/{folder}/")));
         assert!(!(apart && text.contains("rayweave-core")), "{name}: depends on the tracer");
@@ -73,7 +76,10 @@ fn only_the_registry_names_a_strategy() {
     for strategy in rayweave_registry::STRATEGIES {
         // Or one for several, named after what they have in common.
         let is_its = |folder: &String| {
-            strategy.name().strip_prefix(folder).is_some_and(|rest| rest.is_empty() || rest.starts_with('-'))
+            strategy
+                .name()
+                .strip_prefix(folder)
+                .is_some_and(|rest| rest.is_empty() || rest.starts_with('-'))
         };
         assert!(strategies.iter().any(is_its), "a folder for {}", strategy.name());
     }
@@ -82,11 +88,16 @@ fn only_the_registry_names_a_strategy() {
 #[test]
 fn members_take_versions_lints_and_licence_from_the_workspace() {
     for (name, text) in manifests() {
-        for line in ["version.workspace", "edition.workspace", "rust-version.workspace", "license.workspace"]
-        {
+        for line in [
+            "version.workspace",
+            "edition.workspace",
+            "rust-version.workspace",
+            "license.workspace",
+        ] {
             assert!(text.contains(line), "{name}: {line}");
         }
-        let lints = text.contains("[lints]\nworkspace = true") || text.ends_with(&lints_of_who_calls_c());
+        let lints =
+            text.contains("[lints]\nworkspace = true") || text.ends_with(&lints_of_who_calls_c());
         assert!(lints, "{name}: lints");
         assert!(!text.contains("version = "), "{name}: a version of its own");
     }
@@ -94,18 +105,21 @@ fn members_take_versions_lints_and_licence_from_the_workspace() {
 
 /// The workspace's lints, but that unsafe code may be allowed where it is.
 fn lints_of_who_calls_c() -> String {
-    let text = fs::read_to_string(repository().join("Cargo.toml")).expect("the workspace's manifest");
+    let text =
+        fs::read_to_string(repository().join("Cargo.toml")).expect("the workspace's manifest");
     let begin = text.find("[workspace.lints.rust]").expect("lints");
     let (lints, _) = text[begin..].split_once("\n\n[profile").expect("profiles after them");
-    lints.replace("[workspace.", "[").replace("unsafe_code = \"forbid\"", "unsafe_code = \"deny\"") + "\n"
+    lints.replace("[workspace.", "[").replace("unsafe_code = \"forbid\"", "unsafe_code = \"deny\"")
+        + "\n"
 }
 
 /// C is called in one module a crate, and nothing else is unsafe.
 #[test]
 fn unsafe_code_is_only_where_c_is_called() {
     for (name, text) in files("crates", ".rs") {
-        let is_unsafe =
-            ["unsafe {", "unsafe fn", "unsafe impl", "unsafe extern"].iter().any(|word| text.contains(word));
+        let is_unsafe = ["unsafe {", "unsafe fn", "unsafe impl", "unsafe extern"]
+            .iter()
+            .any(|word| text.contains(word));
         assert_eq!(is_unsafe, name.ends_with("/ffi.rs"), "{name}");
     }
 }

@@ -17,7 +17,8 @@ fn render(work: &dyn Work) -> Result<Image, String> {
 
 /// Of one round: nothing here is about time.
 fn study(scene: &Scene) -> Study {
-    let protocol = Protocol { min_rounds: 1, max_rounds: 1, budget: Duration::ZERO, goal: None, seed: 1 };
+    let protocol =
+        Protocol { min_rounds: 1, max_rounds: 1, budget: Duration::ZERO, goal: None, seed: 1 };
     let strategy = rayweave_registry::reference();
     Experiment { scene, size: SIZE, strategy, protocol }.run(render, |_| ()).expect("a study")
 }
@@ -26,8 +27,8 @@ fn picture_with(scene: &Scene, setting: Setting) -> Image {
     render(&*setting.work(scene, SIZE).expect("a sound scene")).expect("a picture")
 }
 
-/// Catches errors that are another setting's, an arithmetic that is compared with other rays, a front
-/// or an advice that does not follow from times and errors.
+/// Catches errors that are another setting's, an arithmetic that is compared with other rays, a
+/// front or an advice that does not follow from times and errors.
 #[test]
 fn each_row_is_of_its_setting() {
     let scene = scenes::named("room");
@@ -45,7 +46,8 @@ fn each_row_is_of_its_setting() {
         assert_eq!(row.sampling_rmse, Difference::between(truth, &picture_with(&scene, deep)).rmse);
         assert_eq!(row.samples_ns.len(), 1);
     }
-    let beats = |a: &Row, b: &Row| a.median_ns < b.median_ns && a.error.psnr() > b.error.psnr() + 0.1;
+    let beats =
+        |a: &Row, b: &Row| a.median_ns < b.median_ns && a.error.psnr() > b.error.psnr() + 0.1;
     for row in study.rows.iter().filter(|row| row.in_front) {
         assert!(!study.rows.iter().any(|other| beats(other, row)), "{} is beaten", row.setting);
     }
@@ -60,9 +62,9 @@ fn each_row_is_of_its_setting() {
     assert_eq!(parts, ["whole scene", "planes", "spheres", "triangles", "cylinders"]);
 }
 
-/// Catches a reference that is not the filter's limit: an independent program comes ever nearer to it
-/// with a denser lattice, down to what its own endpoints are off, and the estimate of its error is no
-/// promise that it does not keep.
+/// Catches a reference that is not the filter's limit: an independent program comes ever nearer to
+/// it with a denser lattice, down to what its own endpoints are off, and the estimate of its error
+/// is no promise that it does not keep.
 #[test]
 fn the_reference_is_the_limit() {
     let mut scene = scenes::named("report");
@@ -78,8 +80,8 @@ fn the_reference_is_the_limit() {
     assert!((1e-6..1e-4).contains(&reference.uncertainty), "{}", reference.uncertainty);
 }
 
-/// Catches samples of the wrong weight or in the wrong place: with no more rays than the lattice the
-/// other sampling is nearer to the limit, in each of the scenes.
+/// Catches samples of the wrong weight or in the wrong place: with no more rays than the lattice
+/// the other sampling is nearer to the limit, in each of the scenes.
 #[test]
 fn importance_is_nearer_with_as_many_rays() {
     for name in scenes::NAMES {
@@ -88,14 +90,18 @@ fn importance_is_nearer_with_as_many_rays() {
         let measured = |sampling, antialiasing| {
             let own = Setting::report(scene.render.max_reflections);
             let setting = Setting { sampling, antialiasing, ..own };
-            let error = Difference::between(&reference.picture, &picture_with(&scene, setting)).rmse;
+            let error =
+                Difference::between(&reference.picture, &picture_with(&scene, setting)).rmse;
             (setting.rays_per_pixel(), error)
         };
         for density in [2, 3, 4] {
             let (lattice_rays, lattice) = measured(Sampling::Lattice, density);
             let (rays, importance) = measured(Sampling::Importance, density + 1);
             assert!(rays <= lattice_rays);
-            assert!(importance < 0.9 * lattice, "{name}: {rays} rays: {importance}, lattice: {lattice}");
+            assert!(
+                importance < 0.9 * lattice,
+                "{name}: {rays} rays: {importance}, lattice: {lattice}"
+            );
         }
     }
 }

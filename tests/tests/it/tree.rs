@@ -1,5 +1,5 @@
-//! A tree of boxes leaves out what a ray does not meet, and nothing else: with it a picture has the bits
-//! that it has when each ray tries each primitive.
+//! A tree of boxes leaves out what a ray does not meet, and nothing else: with it a picture has the
+//! bits that it has when each ray tries each primitive.
 
 use glam::DVec3;
 use proptest::prelude::*;
@@ -32,14 +32,16 @@ fn assert_search_agrees(scene: &Scene, size: (u32, u32), name: &str) {
 
 /// `count` primitives of every shape in every arrangement, at the origin and far from it.
 fn crowds_agree(count: usize, size: (u32, u32), seeds: std::ops::Range<u64>) {
-    for (shape, arrangement) in
-        Shape::ALL.into_iter().flat_map(|shape| Arrangement::ALL.map(|arrangement| (shape, arrangement)))
+    for (shape, arrangement) in Shape::ALL
+        .into_iter()
+        .flat_map(|shape| Arrangement::ALL.map(|arrangement| (shape, arrangement)))
     {
         for seed in seeds.clone() {
             let scene = crowd(seed, count, shape, arrangement);
             // Far away a rounding of `f32` is 1/1024, and so is a box's margin many times larger.
             let offset = if seed % 2 == 0 { DVec3::ZERO } else { DVec3::new(1e4, -7e3, 8e3) };
-            let name = format!("{count} x {shape:?}, {arrangement:?}, seed {seed}, moved by {offset}");
+            let name =
+                format!("{count} x {shape:?}, {arrangement:?}, seed {seed}, moved by {offset}");
             assert_search_agrees(&moved(&scene, offset), size, &name);
         }
     }
@@ -88,8 +90,8 @@ fn every_small_count() {
     }
 }
 
-/// Catches a split that never ends, and an order that nothing decides: everything in one place. From
-/// some number on such a tree is too deep to be used.
+/// Catches a split that never ends, and an order that nothing decides: everything in one place.
+/// From some number on such a tree is too deep to be used.
 #[test]
 fn one_primitive_many_times() {
     for (shape, count) in [Shape::Sphere, Shape::Triangle, Shape::Cylinder]
@@ -106,10 +108,14 @@ fn one_primitive_many_times() {
         let material = |i: usize| (i + 2) % materials;
         scene.spheres =
             repeated(&scene.spheres, count, |sphere, i| Sphere { material: material(i), ..sphere });
-        scene.triangles =
-            repeated(&scene.triangles, count, |triangle, i| Triangle { material: material(i), ..triangle });
-        scene.cylinders =
-            repeated(&scene.cylinders, count, |cylinder, i| Cylinder { material: material(i), ..cylinder });
+        scene.triangles = repeated(&scene.triangles, count, |triangle, i| Triangle {
+            material: material(i),
+            ..triangle
+        });
+        scene.cylinders = repeated(&scene.cylinders, count, |cylinder, i| Cylinder {
+            material: material(i),
+            ..cylinder
+        });
         assert_search_agrees(&scene, (24, 18), &format!("{count} x {shape:?}"));
     }
 }

@@ -88,15 +88,16 @@ fn no_ray_leaves_a_cube_through_its_symmetries() {
     let scene = scene_of(&cube());
     let steps = [-1.0, -0.5, 0.0, 0.5, 1.0];
     let grid = || {
-        steps
-            .into_iter()
-            .flat_map(move |x| steps.into_iter().flat_map(move |y| steps.map(|z| DVec3::new(x, y, z))))
+        steps.into_iter().flat_map(move |x| {
+            steps.into_iter().flat_map(move |y| steps.map(|z| DVec3::new(x, y, z)))
+        })
     };
     for from in grid().map(|point| 0.5 * point) {
         for aim in grid().filter(|point| point.abs().max_element() == 1.0) {
             for precision in [Precision::F32, Precision::F64] {
                 let hit = caster(&scene, precision).nearest_hit(from, aim - from);
-                let hit = hit.unwrap_or_else(|| panic!("{precision}: from {from} to {aim}: a leak"));
+                let hit =
+                    hit.unwrap_or_else(|| panic!("{precision}: from {from} to {aim}: a leak"));
                 assert!((hit.t - 1.0).abs() < 1e-6, "{precision}: from {from} to {aim}: {hit:?}");
             }
         }
@@ -112,10 +113,12 @@ fn a_ray_beside_an_edge_hits_one_side() {
         for sign in [1.0, -1.0] {
             let from = DVec3::new(1.0 + sign * e, 1.0, 4.0);
             let to = DVec3::new(-1.0, -(1.0 - sign * e), 4.0);
-            for (aside, hits) in [(DVec3::new(10.0, -10.0, 4.0), true), (DVec3::new(-10.0, 10.0, 4.0), false)]
+            for (aside, hits) in
+                [(DVec3::new(10.0, -10.0, 4.0), true), (DVec3::new(-10.0, 10.0, 4.0), false)]
             {
                 for vertices in [[from, to, aside], [to, from, aside], [aside, from, to]] {
-                    let hit = caster(&scene_of(&[vertices]), precision).nearest_hit(DVec3::ZERO, DVec3::Z);
+                    let hit = caster(&scene_of(&[vertices]), precision)
+                        .nearest_hit(DVec3::ZERO, DVec3::Z);
                     assert_eq!(hit.is_some(), hits, "{precision}: {vertices:?}");
                 }
             }

@@ -74,11 +74,16 @@ pub(super) mod scalar {
 pub(super) mod vector {
     use super::*;
 
-    pub(crate) fn serialize<S: Serializer>(value: &[f32; 3], serializer: S) -> Result<S::Ok, S::Error> {
+    pub(crate) fn serialize<S: Serializer>(
+        value: &[f32; 3],
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
         value.map(Number).serialize(serializer)
     }
 
-    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[f32; 3], D::Error> {
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<[f32; 3], D::Error> {
         <[Number; 3]>::deserialize(deserializer).map(|numbers| numbers.map(|number| number.0))
     }
 }
@@ -91,7 +96,8 @@ pub(super) mod triangles {
         value: &[[[f32; 3]; 3]],
         serializer: S,
     ) -> Result<S::Ok, S::Error> {
-        serializer.collect_seq(value.iter().map(|triangle| triangle.map(|vertex| vertex.map(Number))))
+        serializer
+            .collect_seq(value.iter().map(|triangle| triangle.map(|vertex| vertex.map(Number))))
     }
 
     pub(crate) fn deserialize<'de, D: Deserializer<'de>>(

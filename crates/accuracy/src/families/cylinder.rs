@@ -26,7 +26,11 @@ impl Wall {
     fn setup(&self, ray: Ray, note: String) -> Setup {
         let top = self.bottom + DVec3::Y * self.height;
         let (bottom, top) = (single(self.bottom), single(top));
-        Setup { primitive: Primitive::Cylinder { bottom, top, radius: self.radius as f32 }, ray, note }
+        Setup {
+            primitive: Primitive::Cylinder { bottom, top, radius: self.radius as f32 },
+            ray,
+            note,
+        }
     }
 }
 
@@ -53,9 +57,17 @@ pub(super) fn parallel(draw: &mut Draw, _: usize) -> Setup {
     let (bottom, radius, way) = (draw.center(5.0), draw.range(0.3, 2.0), draw.sign());
     let (wall, radii, start) = if tilt > 3e-6 {
         // So tall that the ray meets the wall.
-        (Wall::new(bottom, draw.range(3.0, 10.0) * radius / tilt, radius), draw.range(0.0, 0.95), 0.02)
+        (
+            Wall::new(bottom, draw.range(3.0, 10.0) * radius / tilt, radius),
+            draw.range(0.0, 0.95),
+            0.02,
+        )
     } else {
-        (Wall::new(bottom, draw.range(1.0, 5.0), radius), draw.range(0.0, 1.4), draw.range(-0.2, 1.2))
+        (
+            Wall::new(bottom, draw.range(1.0, 5.0), radius),
+            draw.range(0.0, 1.4),
+            draw.range(-0.2, 1.2),
+        )
     };
     let origin = wall.at(draw.circle(), radii, if way > 0.0 { start } else { 1.0 - start });
     wall.setup(ray(origin, spread(draw.circle() * tilt, way)), format!("tilt {tilt:.1e}"))
@@ -81,7 +93,8 @@ pub(super) fn rim(draw: &mut Draw, _: usize) -> Setup {
     let outward = draw.circle();
     let target = wall.at(outward, 1.0, rim + beyond);
     let sideways = outward.perp() * draw.range(-0.5, 0.5);
-    let origin = target + spread((outward + sideways) * draw.range(0.6, 4.0), draw.range(-4.0, 4.0));
+    let origin =
+        target + spread((outward + sideways) * draw.range(0.6, 4.0), draw.range(-4.0, 4.0));
     wall.setup(draw.ray_to(origin, target), format!("{name} rim {beyond:.1e} h"))
 }
 
@@ -91,7 +104,8 @@ pub(super) fn far_wall(draw: &mut Draw, _: usize) -> Setup {
     let outside = draw.magnitude(1e-4, 1.0);
     let outward = draw.circle();
     let (near_height, far_height) = (-outside, draw.range(0.1, 0.9));
-    let turned = if draw.chance(0.5) { [near_height, far_height] } else { [1.0 - near_height, far_height] };
+    let turned =
+        if draw.chance(0.5) { [near_height, far_height] } else { [1.0 - near_height, far_height] };
     let near = wall.at(outward, 1.0, turned[0]);
     let opposite = (outward.perp() * draw.range(-0.8, 0.8) - outward).normalize();
     let far = wall.at(opposite, 1.0, turned[1]);

@@ -105,8 +105,8 @@ impl Draw {
         }
     }
 
-    /// From `origin`, as f32 has it, towards `target`: in half of the cases reaching it at `t` = 1, else
-    /// with a direction of unit length.
+    /// From `origin`, as f32 has it, towards `target`: in half of the cases reaching it at `t` = 1,
+    /// else with a direction of unit length.
     pub(super) fn ray_to(&mut self, origin: DVec3, target: DVec3) -> Ray {
         let direction = target - rounded(origin);
         if self.chance(0.5) { ray(origin, direction) } else { ray(origin, direction.normalize()) }

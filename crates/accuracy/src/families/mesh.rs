@@ -82,20 +82,25 @@ pub(super) fn vertex(draw: &mut Draw, index: usize) -> Setup {
         let ahead = axis.cross(right);
         let hub = placement.put(draw.within(0.5));
         let mut rim = |side: usize| {
-            let angle = (side as f64 + draw.range(-0.3, 0.3)) * std::f64::consts::TAU / sides as f64;
+            let angle =
+                (side as f64 + draw.range(-0.3, 0.3)) * std::f64::consts::TAU / sides as f64;
             let spoke = right * libm::cos(angle) + ahead * libm::sin(angle);
             placement.put((spoke + axis * draw.range(-0.3, 0.3)) * draw.range(0.5, 2.0))
         };
         let rim: Vec<DVec3> = (0..sides).map(&mut rim).collect();
         let way = axis * draw.sign() + draw.within(0.5);
         let origin = hub + way * draw.range(3.0, 10.0) * placement.scale;
-        (origin, (0..sides).map(|side| [hub, rim[side], rim[(side + 1) % sides]]).collect::<Vec<_>>())
+        (
+            origin,
+            (0..sides).map(|side| [hub, rim[side], rim[(side + 1) % sides]]).collect::<Vec<_>>(),
+        )
     };
     // Seen from where all triangles turn the same way: where one is folded over, the hub is on the
     // silhouette, and a ray past it is no leak.
     let (mut origin, mut triangles) = fan();
     for _ in 0..TRIES {
-        let mut turns = triangles.iter().map(|[a, b, c]| (a - origin).dot((b - a).cross(c - a)) > 0.0);
+        let mut turns =
+            triangles.iter().map(|[a, b, c]| (a - origin).dot((b - a).cross(c - a)) > 0.0);
         let first = turns.next();
         if turns.all(|turn| Some(turn) == first) {
             break;

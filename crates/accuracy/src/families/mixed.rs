@@ -31,9 +31,9 @@ fn moved(setup: Setup, scale: f64, place: impl Fn(DVec3) -> DVec3, note: String)
         Primitive::Cylinder { bottom, top, radius } => {
             Primitive::Cylinder { bottom: put(bottom), top: put(top), radius: long(radius) }
         }
-        Primitive::Mesh { triangles } => {
-            Primitive::Mesh { triangles: triangles.into_iter().map(|triangle| triangle.map(put)).collect() }
-        }
+        Primitive::Mesh { triangles } => Primitive::Mesh {
+            triangles: triangles.into_iter().map(|triangle| triangle.map(put)).collect(),
+        },
     };
     Setup { primitive, ray: Ray { origin: put(setup.ray.origin), ..setup.ray }, note }
 }
@@ -72,7 +72,11 @@ pub(super) fn flat_surface_exact(draw: &mut Draw, index: usize) -> Setup {
         origin[axis] = level;
         let [a, b, c] = corners.map(single);
         let primitive = Primitive::Triangle { a, b, c };
-        return Setup { primitive, ray: ray(origin, direction), note: "origin on the triangle".into() };
+        return Setup {
+            primitive,
+            ray: ray(origin, direction),
+            note: "origin on the triangle".into(),
+        };
     }
     let (point, normal, way) = if index.is_multiple_of(4) {
         let mut way = draw.within(2.0);
@@ -93,7 +97,8 @@ pub(super) fn invalid(draw: &mut Draw, index: usize) -> Setup {
     let axis = draw.integer(0, 2) as usize;
     setup.note = match index / 4 % 5 {
         0 => {
-            setup.ray.direction = std::array::from_fn(|_| if draw.chance(0.5) { 0.0 } else { -0.0 });
+            setup.ray.direction =
+                std::array::from_fn(|_| if draw.chance(0.5) { 0.0 } else { -0.0 });
             "no direction".into()
         }
         1 => {
@@ -129,6 +134,8 @@ fn spoil(primitive: &mut Primitive, axis: usize, bad: f32, position: bool) {
         Primitive::Plane { normal, .. } => normal[axis] = bad,
         Primitive::Sphere { radius, .. } | Primitive::Cylinder { radius, .. } => *radius = bad,
         Primitive::Triangle { c: at, .. } => at[axis] = bad,
-        Primitive::Mesh { triangles } => triangles.iter_mut().for_each(|triangle| triangle[0][axis] = bad),
+        Primitive::Mesh { triangles } => {
+            triangles.iter_mut().for_each(|triangle| triangle[0][axis] = bad)
+        }
     }
 }

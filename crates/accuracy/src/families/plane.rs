@@ -7,7 +7,11 @@ use super::draw::{Draw, ray, single};
 use crate::cases::{Primitive, Ray};
 
 fn setup(point: DVec3, normal: DVec3, ray: Ray, note: String) -> Setup {
-    Setup { primitive: Primitive::Plane { point: single(point), normal: single(normal) }, ray, note }
+    Setup {
+        primitive: Primitive::Plane { point: single(point), normal: single(normal) },
+        ray,
+        note,
+    }
 }
 
 /// A floor in some cases, else any plane.

@@ -7,7 +7,11 @@ use super::draw::{Draw, ray, rounded, single};
 use crate::cases::{Primitive, Ray};
 
 fn setup(center: DVec3, radius: f64, ray: Ray, note: String) -> Setup {
-    Setup { primitive: Primitive::Sphere { center: single(center), radius: radius as f32 }, ray, note }
+    Setup {
+        primitive: Primitive::Sphere { center: single(center), radius: radius as f32 },
+        ray,
+        note,
+    }
 }
 
 pub(super) fn basic(draw: &mut Draw, _: usize) -> Setup {
@@ -69,7 +73,8 @@ pub(super) fn surface_exact(draw: &mut Draw, index: usize) -> Setup {
     let (offset, radius) = loop {
         // Lebesgue's identity: four whole numbers give a vector of whole length.
         let [m, n, p, q] = std::array::from_fn(|_| f64::from(draw.integer(-12, 12)));
-        let offset = DVec3::new(m * m + n * n - p * p - q * q, 2.0 * (m * q + n * p), 2.0 * (n * q - m * p));
+        let offset =
+            DVec3::new(m * m + n * n - p * p - q * q, 2.0 * (m * q + n * p), 2.0 * (n * q - m * p));
         if offset != DVec3::ZERO {
             break (offset, m * m + n * n + p * p + q * q);
         }
@@ -77,7 +82,12 @@ pub(super) fn surface_exact(draw: &mut Draw, index: usize) -> Setup {
     let unit = libm::ldexp(1.0, draw.integer(-10, 7));
     let center = if draw.chance(0.5) { DVec3::ZERO } else { draw.lattice(1 << 11, unit) };
     let (direction, note) = through_surface(draw, offset, index);
-    setup(center, radius * unit, ray(center + offset * unit, direction), format!("on the surface, {note}"))
+    setup(
+        center,
+        radius * unit,
+        ray(center + offset * unit, direction),
+        format!("on the surface, {note}"),
+    )
 }
 
 pub(super) fn surface_round(draw: &mut Draw, index: usize) -> Setup {

@@ -14,7 +14,12 @@ struct Condition {
 }
 
 /// `axis` are its lower and its upper end.
-pub(super) fn trace(axis: &[Vector; 2], radius: &RBig, origin: &Vector, direction: &Vector) -> Trace {
+pub(super) fn trace(
+    axis: &[Vector; 2],
+    radius: &RBig,
+    origin: &Vector,
+    direction: &Vector,
+) -> Trace {
     let [bottom, top] = axis;
     if sign(radius).is_le() || bottom[1] > top[1] {
         return Trace::miss("no radius or height", f64::INFINITY);
@@ -39,7 +44,10 @@ pub(super) fn trace(axis: &[Vector; 2], radius: &RBig, origin: &Vector, directio
         // How far up the wall, from either rim, in its own direction.
         let within_rim = |start: RBig, d_y: &RBig| {
             let height = t.times(d_y).plus(&start);
-            Condition { holds: height.sign().is_ge(), margin: rim_margin(&height, &start, d_y, &t, cond) }
+            Condition {
+                holds: height.sign().is_ge(),
+                margin: rim_margin(&height, &start, d_y, &t, cond),
+            }
         };
         let conditions = [
             Condition { holds: is_ahead(&t), margin: side_margin },
@@ -58,8 +66,8 @@ pub(super) fn trace(axis: &[Vector; 2], radius: &RBig, origin: &Vector, directio
     Trace::miss("behind, above or below", so_far)
 }
 
-/// The margin of the sign of `height = start + t d_y`: `start` and `d_y` are inputs, and `t` follows
-/// its own with the condition number `cond`.
+/// The margin of the sign of `height = start + t d_y`: `start` and `d_y` are inputs, and `t`
+/// follows its own with the condition number `cond`.
 fn rim_margin(height: &Surd, start: &RBig, d_y: &RBig, t: &Surd, cond: f64) -> f64 {
     let climb = t.times(d_y).size();
     let follows = if climb == 0.0 { 0.0 } else { climb * (1.0 + cond) };

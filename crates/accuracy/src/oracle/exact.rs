@@ -31,7 +31,8 @@ fn real(value: &RBig) -> Real {
     value.to_float(BITS).value()
 }
 
-/// The nearest `f64`: for what needs a few digits only. No product of a few f32 numbers leaves its range.
+/// The nearest `f64`: for what needs a few digits only. No product of a few f32 numbers leaves its
+/// range.
 pub(super) fn float(value: &RBig) -> f64 {
     value.to_f64().value()
 }

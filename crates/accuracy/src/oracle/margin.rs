@@ -14,7 +14,8 @@ pub(super) fn in_ulps(distance: f64, scale: f64) -> f64 {
     if scale == 0.0 { f64::INFINITY } else { distance.abs() / scale / ULP }
 }
 
-/// The margin of the sign of a fraction that is perturbed by `scale` times the perturbation of its inputs.
+/// The margin of the sign of a fraction that is perturbed by `scale` times the perturbation of its
+/// inputs.
 pub(super) fn of(value: &RBig, scale: &RBig) -> f64 {
     in_ulps(float(value), float(scale))
 }
@@ -22,7 +23,11 @@ pub(super) fn of(value: &RBig, scale: &RBig) -> f64 {
 /// The margin of the sign of a sum of products; infinite for a 0 that f32 computes as such.
 pub(super) fn of_sum(terms: &[RBig]) -> f64 {
     let value = sum(terms);
-    if value.is_zero() && computed_exactly(terms) { f64::INFINITY } else { of(&value, &sum_of_sizes(terms)) }
+    if value.is_zero() && computed_exactly(terms) {
+        f64::INFINITY
+    } else {
+        of(&value, &sum_of_sizes(terms))
+    }
 }
 
 /// Whether f32 arithmetic adds these fractions without rounding, in any order: all are multiples of

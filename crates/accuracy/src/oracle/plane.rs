@@ -1,6 +1,8 @@
 //! Plane: `t = (q - o).n / d.n` with a point `q` and the normal `n`.
 
-use super::exact::{Surd, Vector, abs, float, is_zero, products, sign, subtract, sum, sum_of_sizes};
+use super::exact::{
+    Surd, Vector, abs, float, is_zero, products, sign, subtract, sum, sum_of_sizes,
+};
 use super::{Trace, margin, unit};
 
 pub(super) fn trace(point: &Vector, normal: &Vector, origin: &Vector, direction: &Vector) -> Trace {
@@ -18,6 +20,7 @@ pub(super) fn trace(point: &Vector, normal: &Vector, origin: &Vector, direction:
     if sign(&height) != sign(&slope) {
         return Trace::miss("behind", margin);
     }
-    let cond = sum_of_sizes(&height_terms) / abs(&height) + sum_of_sizes(&slope_terms) / abs(&slope);
+    let cond =
+        sum_of_sizes(&height_terms) / abs(&height) + sum_of_sizes(&slope_terms) / abs(&slope);
     Trace::hit(Surd::rational(height / slope), float(&cond), unit(normal), margin)
 }

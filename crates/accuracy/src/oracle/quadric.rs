@@ -43,9 +43,9 @@ impl<const N: usize> Quadric<N> {
 
     /// The margin of the discriminant's sign.
     ///
-    /// It says whether the closest approach `l = f - (h/a) d` is longer than `r`. Perturbing `f`, `d`
-    /// and `r` by an ulp moves `l` by no more than an ulp of `|f_i| + |h/a d_i|` in each direction,
-    /// and `r` by one of `r`.
+    /// It says whether the closest approach `l = f - (h/a) d` is longer than `r`. Perturbing `f`,
+    /// `d` and `r` by an ulp moves `l` by no more than an ulp of `|f_i| + |h/a d_i|` in each
+    /// direction, and `r` by one of `r`.
     pub(super) fn approach_margin(&self) -> f64 {
         let s = &self.h / &self.a;
         let steps: [RBig; N] = std::array::from_fn(|i| &s * &self.direction[i]);
@@ -55,7 +55,8 @@ impl<const N: usize> Quadric<N> {
         margin::in_ulps(gap.size(), float(&dot(&moved, &moved)).sqrt() + float(&self.radius))
     }
 
-    /// The same as far as it decides the verdict: a line from inside or from the surface surely meets it.
+    /// The same as far as it decides the verdict: a line from inside or from the surface surely
+    /// meets it.
     pub(super) fn meeting_margin(&self) -> f64 {
         if sign(&self.c).is_gt() { self.approach_margin() } else { f64::INFINITY }
     }
@@ -75,8 +76,8 @@ impl<const N: usize> Quadric<N> {
     }
 
     /// The relative condition number of a root: by the derivative of `|f + t d|^2 = r^2` it is
-    /// `(sum |f_i p_i| + |t| sum |d_i p_i| + r^2) / (|p.d| |t|)` at the point `p`; and `|p.d|` is the
-    /// discriminant's root. Infinite where the ray is tangent and for a root of 0.
+    /// `(sum |f_i p_i| + |t| sum |d_i p_i| + r^2) / (|p.d| |t|)` at the point `p`; and `|p.d|` is
+    /// the discriminant's root. Infinite where the ray is tangent and for a root of 0.
     pub(super) fn condition(&self, t: &Surd) -> f64 {
         let t_size = t.size();
         let mut sum = float(&self.radius) * float(&self.radius);
@@ -89,7 +90,9 @@ impl<const N: usize> Quadric<N> {
     /// The outward normal at a root: one component an axis.
     pub(super) fn normal(&self, t: &Surd) -> [Surd; N] {
         let inverse = RBig::ONE / &self.radius;
-        std::array::from_fn(|i| t.times(&self.direction[i]).plus(&self.from_center[i]).times(&inverse))
+        std::array::from_fn(|i| {
+            t.times(&self.direction[i]).plus(&self.from_center[i]).times(&inverse)
+        })
     }
 }
 

@@ -1,13 +1,13 @@
-//! Triangle: `t = (a - o).n / d.n` with `n = (b - a) x (c - a)`, hit where the signed volumes that the
-//! ray spans with the three edges do not differ in sign.
+//! Triangle: `t = (a - o).n / d.n` with `n = (b - a) x (c - a)`, hit where the signed volumes that
+//! the ray spans with the three edges do not differ in sign.
 
 use std::cmp::Ordering;
 
 use dashu_ratio::RBig;
 
 use super::exact::{
-    Surd, Vector, abs, cross, cross_products, dot, dot_of_sizes, float, is_zero, products, sign, subtract,
-    sum, sum_of_sizes,
+    Surd, Vector, abs, cross, cross_products, dot, dot_of_sizes, float, is_zero, products, sign,
+    subtract, sum, sum_of_sizes,
 };
 use super::{Trace, margin, unit};
 
@@ -28,10 +28,11 @@ pub(super) fn trace(vertices: &[Vector; 3], origin: &Vector, direction: &Vector)
     let scale = |v: &Vector| dot_of_sizes(v, &normal) + dot_of_sizes(v, &normal_sizes);
 
     let [from_a, from_b, from_c] = vertices.each_ref().map(|vertex| subtract(vertex, origin));
-    let edges =
-        [(&from_b, &from_c), (&from_c, &from_a), (&from_a, &from_b)].map(|(p, q)| edge(p, q, direction));
-    let farthest =
-        |side| edges.iter().filter(|edge| edge.side == side).map(|edge| edge.margin).reduce(f64::max);
+    let edges = [(&from_b, &from_c), (&from_c, &from_a), (&from_a, &from_b)]
+        .map(|(p, q)| edge(p, q, direction));
+    let farthest = |side| {
+        edges.iter().filter(|edge| edge.side == side).map(|edge| edge.margin).reduce(f64::max)
+    };
     // Outside by as much as the less certain of two edges with different signs says.
     let outside = farthest(Ordering::Greater)
         .zip(farthest(Ordering::Less))
@@ -47,11 +48,12 @@ pub(super) fn trace(vertices: &[Vector; 3], origin: &Vector, direction: &Vector)
     }
     let height_terms = products(&from_a, &normal);
     let height = sum(&height_terms);
-    let height_margin = if height.is_zero() && normal_exact && margin::computed_exactly(&height_terms) {
-        f64::INFINITY
-    } else {
-        margin::of(&height, &scale(&from_a))
-    };
+    let height_margin =
+        if height.is_zero() && normal_exact && margin::computed_exactly(&height_terms) {
+            f64::INFINITY
+        } else {
+            margin::of(&height, &scale(&from_a))
+        };
     let ahead = sign(&height) == sign(&slope);
     let plane_margin = height_margin.min(margin::of(&slope, &scale(direction)));
     match (outside, ahead) {
@@ -79,8 +81,9 @@ fn edge(p: &Vector, q: &Vector, direction: &Vector) -> Edge {
     Edge { side: sign(&volume), margin }
 }
 
-/// The relative condition number of `t = height / slope`: it follows `a - o` and the direction by the
-/// normal, and the edges by the products in the normal and the way from `a` to the point that is hit.
+/// The relative condition number of `t = height / slope`: it follows `a - o` and the direction by
+/// the normal, and the edges by the products in the normal and the way from `a` to the point that
+/// is hit.
 fn condition(
     t: &RBig,
     slope: &RBig,

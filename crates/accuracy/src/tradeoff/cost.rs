@@ -31,16 +31,34 @@ impl Parts {
             ..scene.clone()
         };
         let parts = [
-            ("planes", scene.planes.is_empty(), Scene { planes: scene.planes.clone(), ..empty.clone() }),
-            ("spheres", scene.spheres.is_empty(), Scene { spheres: scene.spheres.clone(), ..empty.clone() }),
+            (
+                "planes",
+                scene.planes.is_empty(),
+                Scene { planes: scene.planes.clone(), ..empty.clone() },
+            ),
+            (
+                "spheres",
+                scene.spheres.is_empty(),
+                Scene { spheres: scene.spheres.clone(), ..empty.clone() },
+            ),
             (
                 "triangles",
                 scene.triangles.is_empty(),
                 Scene { triangles: scene.triangles.clone(), ..empty.clone() },
             ),
-            ("cylinders", scene.cylinders.is_empty(), Scene { cylinders: scene.cylinders.clone(), ..empty }),
+            (
+                "cylinders",
+                scene.cylinders.is_empty(),
+                Scene { cylinders: scene.cylinders.clone(), ..empty },
+            ),
         ];
-        Self(parts.into_iter().filter(|part| !part.1).map(|(name, _, scene)| (name, scene)).collect())
+        Self(
+            parts
+                .into_iter()
+                .filter(|part| !part.1)
+                .map(|(name, _, scene)| (name, scene))
+                .collect(),
+        )
     }
 
     /// Each part in all arithmetics, with the report's rays.
@@ -59,7 +77,9 @@ impl Parts {
             times[place.expect("among the settings")]
         };
         let mut costs = vec![cost("whole scene", whole)];
-        for (&(part, _), times) in self.0.iter().zip(times[settings.len()..].chunks(ARITHMETICS.len())) {
+        for (&(part, _), times) in
+            self.0.iter().zip(times[settings.len()..].chunks(ARITHMETICS.len()))
+        {
             costs.push(cost(part, |arithmetic| {
                 let place = ARITHMETICS.iter().position(|known| *known == arithmetic);
                 times[place.expect("among the arithmetics")]

@@ -1,7 +1,7 @@
 //! Which settings are worth choosing.
 
-/// For each of `points`, of time and error, whether no other one is as fast and as exact, and better in
-/// one of the two (Pareto). Of equal points all are; one with a NaN never is.
+/// For each of `points`, of time and error, whether no other one is as fast and as exact, and
+/// better in one of the two (Pareto). Of equal points all are; one with a NaN never is.
 #[must_use]
 pub fn pareto_front(points: &[(f64, f64)]) -> Vec<bool> {
     let dominates = |a: &(f64, f64), b: &(f64, f64)| a.0 <= b.0 && a.1 <= b.1 && a != b;

@@ -10,8 +10,9 @@ use rayweave_core::{Sampling, Scene};
 pub struct Reference {
     /// In robust `f64`, some 7,700 rays a pixel.
     pub picture: Image,
-    /// An estimate of the picture's root mean square error: half of the difference between its halves,
-    /// each with half of the rays in other places. Errors that the two have in common do not show.
+    /// An estimate of the picture's root mean square error: half of the difference between its
+    /// halves, each with half of the rays in other places. Errors that the two have in common do
+    /// not show.
     pub uncertainty: f64,
 }
 

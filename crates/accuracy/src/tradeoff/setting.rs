@@ -35,7 +35,8 @@ pub const ARITHMETICS: [Arithmetic; 4] = [
 ];
 
 impl Setting {
-    /// The lab report's own: its formulas in `f32`, 5 x 5 rays a pixel, all bounces that the scene has.
+    /// The lab report's own: its formulas in `f32`, 5 x 5 rays a pixel, all bounces that the scene
+    /// has.
     #[must_use]
     pub fn report(max_reflections: u32) -> Self {
         Self {
@@ -47,15 +48,18 @@ impl Setting {
         }
     }
 
-    /// Every setting that is tried on `scene`, those that differ in their arithmetic alone together,
-    /// the most exact one first; before settings of less depth come those of the scene's own.
+    /// Every setting that is tried on `scene`, those that differ in their arithmetic alone
+    /// together, the most exact one first; before settings of less depth come those of the scene's
+    /// own.
     #[must_use]
     pub fn all(scene: &Scene) -> Vec<Self> {
         let mut all = Vec::new();
-        let patterns = [(Sampling::Lattice, false), (Sampling::Importance, false), (Sampling::Lattice, true)];
+        let patterns =
+            [(Sampling::Lattice, false), (Sampling::Importance, false), (Sampling::Lattice, true)];
         for (sampling, adaptive) in patterns {
             for antialiasing in DENSITIES {
-                // One ray a pixel is the same in all; on a lattice of one step a pixel all points are centres.
+                // One ray a pixel is the same in all; on a lattice of one step a pixel all points
+                // are centres.
                 let same = sampling == Sampling::Importance || adaptive;
                 if (antialiasing == 0 && same) || (antialiasing == 1 && adaptive) {
                     continue;
@@ -64,8 +68,13 @@ impl Setting {
                 let depths = depths(scene);
                 let depths = if adaptive { &depths[..1] } else { &depths[..] };
                 for &max_reflections in depths {
-                    let setting =
-                        |arithmetic| Self { arithmetic, sampling, adaptive, antialiasing, max_reflections };
+                    let setting = |arithmetic| Self {
+                        arithmetic,
+                        sampling,
+                        adaptive,
+                        antialiasing,
+                        max_reflections,
+                    };
                     all.extend(ARITHMETICS.map(setting));
                 }
             }

@@ -2,7 +2,8 @@
 
 use rayweave_accuracy::{FAMILIES, Primitive, answer, cases, generate};
 
-/// `cargo run -p rayweave-accuracy --example hard-cases -- --seed 1977 --count 20 > corpus/hard-cases.jsonl`
+/// `cargo run -p rayweave-accuracy --example hard-cases -- --seed 1977 --count 20 >
+/// corpus/hard-cases.jsonl`
 const CORPUS: &str = include_str!("../../corpus/hard-cases.jsonl");
 const SEED: u64 = 1977;
 const COUNT: usize = 20;
@@ -11,7 +12,8 @@ const COUNT: usize = 20;
 fn the_corpus_is_drawn_anew_digit_for_digit() {
     let mut drawn = Vec::new();
     for family in &FAMILIES {
-        cases::write(&mut drawn, &generate(family, SEED, COUNT)).expect("a vector takes everything");
+        cases::write(&mut drawn, &generate(family, SEED, COUNT))
+            .expect("a vector takes everything");
     }
     let drawn = String::from_utf8(drawn).expect("JSON is text");
     assert_eq!(drawn.lines().count(), CORPUS.lines().count());
@@ -38,6 +40,7 @@ fn writing_what_was_read_gives_the_same_text() {
     let mut written = Vec::new();
     cases::write(&mut written, &cases).expect("a vector takes everything");
     assert!(written == CORPUS.as_bytes());
-    let numbers = cases.iter().filter(|case| matches!(case.primitive, Primitive::Mesh { .. })).count();
+    let numbers =
+        cases.iter().filter(|case| matches!(case.primitive, Primitive::Mesh { .. })).count();
     assert_eq!(numbers, 3 * COUNT);
 }

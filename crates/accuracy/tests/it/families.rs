@@ -80,13 +80,25 @@ fn exact_cases_are_exact() {
 
 #[test]
 fn hard_families_are_hard_and_controls_are_not() {
-    for name in ["sphere_graze", "cyl_graze", "tri_needle", "tri_sliver", "sphere_far", "cyl_far", "tri_edge"]
-    {
+    for name in [
+        "sphere_graze",
+        "cyl_graze",
+        "tri_needle",
+        "tri_sliver",
+        "sphere_far",
+        "cyl_far",
+        "tri_edge",
+    ] {
         let cases = drawn(name, 50);
         let borderline = cases.iter().filter(|case| !case.decidable).count();
-        assert!(borderline * 6 > cases.len() && borderline * 3 < cases.len() * 2, "{name}: {borderline}");
+        assert!(
+            borderline * 6 > cases.len() && borderline * 3 < cases.len() * 2,
+            "{name}: {borderline}"
+        );
     }
-    for name in ["plane_basic", "sphere_basic", "tri_basic", "cyl_basic", "sphere_inside", "scale_scene"] {
+    for name in
+        ["plane_basic", "sphere_basic", "tri_basic", "cyl_basic", "sphere_inside", "scale_scene"]
+    {
         assert!(drawn(name, 50).iter().filter(|case| !case.decidable).count() <= 1, "{name}");
     }
     let largest = |name| drawn(name, 50).iter().map(|case| case.cond).fold(0.0, f64::max);

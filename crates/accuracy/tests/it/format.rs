@@ -14,7 +14,10 @@ fn inputs_are_enough_and_unknown_fields_are_passed_over() {
     let text = format!(r#"{{"family":"f","id":"a",{PLANE},{RAY},"seed":[1,{{}}]}}"#);
     let case = case(&text).expect("a case");
     assert_eq!((case.expect, case.decidable, case.cond, case.margin), (None, false, 0.0, 0.0));
-    assert_eq!(case.primitive, Primitive::Plane { point: [0.0, 0.0, 1.0], normal: [0.0, 0.0, 1.0] });
+    assert_eq!(
+        case.primitive,
+        Primitive::Plane { point: [0.0, 0.0, 1.0], normal: [0.0, 0.0, 1.0] }
+    );
 }
 
 #[test]
@@ -30,18 +33,24 @@ fn numbers_are_rounded_to_f32_and_may_be_named() {
     assert!(center[0].is_nan());
     assert_eq!((center[1], center[2], radius), (f32::INFINITY, f32::NEG_INFINITY, 0.1));
     let beyond = text.replace("0.1000000000000001", "1e39");
-    let Ok(Case { primitive: Primitive::Sphere { radius, .. }, .. }) = case(&beyond) else { panic!() };
+    let Ok(Case { primitive: Primitive::Sphere { radius, .. }, .. }) = case(&beyond) else {
+        panic!()
+    };
     assert_eq!(radius, f32::INFINITY);
     let mut written = Vec::new();
     cases::write(&mut written, &[case(&text).expect("a case")]).expect("a vector takes everything");
     let written = String::from_utf8(written).expect("text");
-    assert!(written.contains(r#""center":["NaN","Infinity","-Infinity"],"radius":0.1}"#), "{written}");
+    assert!(
+        written.contains(r#""center":["NaN","Infinity","-Infinity"],"radius":0.1}"#),
+        "{written}"
+    );
 }
 
 #[test]
 fn answers_are_read_in_their_three_forms() {
     let with = |expect: &str| {
-        case(&format!(r#"{{"family":"f","id":"a",{PLANE},{RAY},"expect":{expect}}}"#)).map(|case| case.expect)
+        case(&format!(r#"{{"family":"f","id":"a",{PLANE},{RAY},"expect":{expect}}}"#))
+            .map(|case| case.expect)
     };
     assert_eq!(with(r#"{"hit":false}"#), Ok(Some(Expect::Miss)));
     let Ok(Some(Expect::MeshHit { t })) = with(r#"{"min_hits":1,"t":"1.50"}"#) else { panic!() };
@@ -104,11 +113,16 @@ fn outcomes_are_read_as_written() {
     assert_eq!(found, expected);
     let mut written = Vec::new();
     let nan = outcome("f", true, Some(f64::NAN));
-    outcomes::write(&mut written, &[expected[0].clone(), expected[1].clone(), nan]).expect("a vector");
+    outcomes::write(&mut written, &[expected[0].clone(), expected[1].clone(), nan])
+        .expect("a vector");
     let written = String::from_utf8(written).expect("text");
     assert_eq!(written.lines().nth(2), Some(r#"{"id":"f","hit":true,"t":"NaN"}"#));
-    assert_eq!(written.lines().take(2).collect::<Vec<_>>(), text.lines().take(2).collect::<Vec<_>>());
-    let error =
-        outcomes::read(&b"{\"id\":\"a\",\"hit\":true,\"t\":\"far\"}"[..]).expect_err("no number").to_string();
+    assert_eq!(
+        written.lines().take(2).collect::<Vec<_>>(),
+        text.lines().take(2).collect::<Vec<_>>()
+    );
+    let error = outcomes::read(&b"{\"id\":\"a\",\"hit\":true,\"t\":\"far\"}"[..])
+        .expect_err("no number")
+        .to_string();
     assert!(error.contains("`t` is a number, \"NaN\""), "{error}");
 }

@@ -10,7 +10,11 @@ fn misses(formulas: Formulas, precision: Precision, tier: Tier) -> Vec<String> {
     let arithmetic = Arithmetic { formulas, precision };
     let outcomes: Vec<_> = cases.iter().map(|case| kernel::outcome(case, arithmetic)).collect();
     let scores = score(&cases, &outcomes);
-    scores.into_iter().filter(|score| !tier.missed(score).is_empty()).map(|score| score.family).collect()
+    scores
+        .into_iter()
+        .filter(|score| !tier.missed(score).is_empty())
+        .map(|score| score.family)
+        .collect()
 }
 
 /// Catches any formula of the kernel that loses a verdict or its stability.

@@ -176,8 +176,8 @@ fn edges_and_vertices_belong_to_a_triangle() {
         assert!(!assert_hit(&answer, "2", point, ["0", "0", "1"]), "({x}, {y})");
         assert_eq!(answer.margin, 0.0, "({x}, {y})");
     }
-    // Past an edge by little more than nothing: decidable where f32 has that little in a coordinate, and
-    // not at the slanted edge, where it is a difference of products.
+    // Past an edge by little more than nothing: decidable where f32 has that little in a
+    // coordinate, and not at the slanted edge, where it is a difference of products.
     let tiny = 2.0_f32.powi(-40);
     for (x, y) in [(2.0, -tiny), (-tiny, 2.0), (-tiny, -tiny), (4.0, -tiny)] {
         assert!(assert_miss(&above(x, y), "outside"), "({x}, {y})");
@@ -205,7 +205,9 @@ fn a_ray_in_the_plane_misses_a_triangle() {
 fn a_triangle_without_area_is_never_hit() {
     let down = |a, b, c| trace(&Primitive::Triangle { a, b, c }, [1.0, 0.0, 2.0], [0.0, 0.0, -1.0]);
     let (o, x) = ([0.0; 3], [2.0, 0.0, 0.0]);
-    for answer in [down(o, x, [0.5, 0.0, 0.0]), down(o, x, x), down(o, o, x), down(x, o, x), down(o, o, o)] {
+    for answer in
+        [down(o, x, [0.5, 0.0, 0.0]), down(o, x, x), down(o, o, x), down(x, o, x), down(o, o, o)]
+    {
         assert!(assert_miss(&answer, "degenerate"));
         assert_eq!(answer.margin, INFINITE);
     }
@@ -218,7 +220,8 @@ fn a_triangle_without_area_is_never_hit() {
     assert!(!assert_hit(&least, "2", ["1", "0", "0"], ["0", "0", "1"]));
 }
 
-const WALL: Primitive = Primitive::Cylinder { bottom: [0.0, -1.0, 0.0], top: [0.0, 1.0, 0.0], radius: 1.0 };
+const WALL: Primitive =
+    Primitive::Cylinder { bottom: [0.0, -1.0, 0.0], top: [0.0, 1.0, 0.0], radius: 1.0 };
 
 #[test]
 fn cylinder() {
@@ -231,7 +234,10 @@ fn cylinder() {
     assert!(assert_miss(&trace(&wide, [-8.0, 1.0, 6.0], [2.0, 1.0, 0.0]), "beside"));
     assert!(assert_miss(&trace(&wide, [7.0, 1.0, 4.0], [2.0, 1.0, 0.0]), "behind, above or below"));
     // From inside out of the open top.
-    assert!(assert_miss(&trace(&wide, [-1.0, 8.0, 4.0], [2.0, 1.0, 0.0]), "behind, above or below"));
+    assert!(assert_miss(
+        &trace(&wide, [-1.0, 8.0, 4.0], [2.0, 1.0, 0.0]),
+        "behind, above or below"
+    ));
     // A tangent touches it.
     let tangent = trace(&WALL, [1.0, 0.0, -5.0], [0.0, 0.0, 1.0]);
     assert!(!assert_hit(&tangent, "5", ["1", "0", "0"], ["1", "0", "0"]));
@@ -275,7 +281,10 @@ fn a_ray_along_the_axis_misses_a_cylinder() {
 fn a_start_on_the_wall_hits_only_the_other_side() {
     let inward = trace(&WALL, [0.0, 0.0, -1.0], [0.0, 0.25, 1.0]);
     assert!(assert_hit(&inward, "2", ["0", "0.5", "1"], ["0", "0", "1"]));
-    assert!(assert_miss(&trace(&WALL, [0.0, 0.0, -1.0], [0.0, 0.25, -1.0]), "behind, above or below"));
+    assert!(assert_miss(
+        &trace(&WALL, [0.0, 0.0, -1.0], [0.0, 0.25, -1.0]),
+        "behind, above or below"
+    ));
 }
 
 #[test]
@@ -326,10 +335,14 @@ fn the_extremes_of_f32_are_answered() {
     assert!(trace(&huge, [0.0; 3], [small, 0.0, 0.0]).expect.is_hit());
     let speck = Primitive::Sphere { center: [large, 0.0, 0.0], radius: small };
     assert!(trace(&speck, [-large, 0.0, 0.0], [small, 0.0, 0.0]).expect.is_hit());
-    let sheet =
-        Primitive::Triangle { a: [large, -large, large], b: [large, large, large], c: [large, 0.0, -large] };
+    let sheet = Primitive::Triangle {
+        a: [large, -large, large],
+        b: [large, large, large],
+        c: [large, 0.0, -large],
+    };
     let answer = trace(&sheet, [-large, 0.0, 0.0], [small, 0.0, 0.0]);
     assert!(answer.expect.is_hit() && answer.cond.is_finite() && answer.margin.is_finite());
-    let tube = Primitive::Cylinder { bottom: [0.0, -large, 0.0], top: [0.0, large, 0.0], radius: small };
+    let tube =
+        Primitive::Cylinder { bottom: [0.0, -large, 0.0], top: [0.0, large, 0.0], radius: small };
     assert!(trace(&tube, [0.0, large, -large], [0.0, -large, large]).expect.is_hit());
 }

@@ -1,20 +1,22 @@
-//! The robust kernel against the exact oracle, in f64 and f32, on random and on structured input: it
-//! keeps what `rayweave_accuracy::promise` says.
+//! The robust kernel against the exact oracle, in f64 and f32, on random and on structured input:
+//! it keeps what `rayweave_accuracy::promise` says.
 
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use rayweave_accuracy::{Primitive, Ray, oracle, promise};
 
-/// A multiple of 1/16, with so few bits that products of several do not round: corners, edges, tangents
-/// and parallels are met exactly.
+/// A multiple of 1/16, with so few bits that products of several do not round: corners, edges,
+/// tangents and parallels are met exactly.
 fn fraction() -> impl Strategy<Value = f32> {
     (-64..=64i8).prop_map(|k| f32::from(k) / 16.0)
 }
 
-/// Where on the way from one end of something to the other: anywhere, at an end, or just beside one.
+/// Where on the way from one end of something to the other: anywhere, at an end, or just beside
+/// one.
 fn share() -> impl Strategy<Value = f32> {
     let beside = (any::<bool>(), any::<bool>(), 4..24i32).prop_map(|(at_end, beyond, exponent)| {
-        f32::from(u8::from(at_end)) + if beyond { 2f32.powi(-exponent) } else { -2f32.powi(-exponent) }
+        f32::from(u8::from(at_end))
+            + if beyond { 2f32.powi(-exponent) } else { -2f32.powi(-exponent) }
     });
     prop_oneof![fraction().prop_map(|k| k / 4.0), beside]
 }
@@ -45,17 +47,15 @@ struct Setting {
     origin: [f32; 3],
     /// If not to the point aimed at.
     direction: Option<[f32; 3]>,
-    /// Added to all positions. Those are rounded then, and the ray passes what it was aimed at by so much.
+    /// Added to all positions. Those are rounded then, and the ray passes what it was aimed at by
+    /// so much.
     place: [f32; 3],
 }
 
 fn setting() -> impl Strategy<Value = Setting> {
     let place = prop_oneof![Just([0.0; 3]), [sized(), sized(), sized()]];
-    (vector(), prop::option::weighted(0.25, vector()), place).prop_map(|(origin, direction, place)| Setting {
-        origin,
-        direction,
-        place,
-    })
+    (vector(), prop::option::weighted(0.25, vector()), place)
+        .prop_map(|(origin, direction, place)| Setting { origin, direction, place })
 }
 
 fn moved(point: [f32; 3], way: [f32; 3], times: f32) -> [f32; 3] {
@@ -90,7 +90,8 @@ fn config() -> ProptestConfig {
 proptest! {
     #![proptest_config(config())]
 
-    /// Catches a plane with one side, one that is hit behind the ray, and heights that are not differences.
+    /// Catches a plane with one side, one that is hit behind the ray, and heights that are not
+    /// differences.
     #[test]
     fn planes_are_hit_where_they_are(
         point in vector(),
@@ -119,8 +120,8 @@ proptest! {
         check(|put| Primitive::Sphere { center: put(center), radius }, &setting, aim)?;
     }
 
-    /// Catches a back that is not hit, an edge with the wrong sign, and corners or distances that are not
-    /// differences.
+    /// Catches a back that is not hit, an edge with the wrong sign, and corners or distances that
+    /// are not differences.
     #[test]
     fn triangles_are_hit_where_they_are(
         corners in [vector(), vector(), vector()],
@@ -133,8 +134,8 @@ proptest! {
         check(|put| Primitive::Triangle { a: put(a), b: put(b), c: put(c) }, &setting, aim)?;
     }
 
-    /// Catches a far wall that is not seen through the open end, heights that are not differences, caps,
-    /// and a discriminant that cancels.
+    /// Catches a far wall that is not seen through the open end, heights that are not differences,
+    /// caps, and a discriminant that cancels.
     #[test]
     fn cylinders_are_hit_where_they_are(
         bottom in vector(),
@@ -168,10 +169,8 @@ const KINDS: [Kind; 4] = [
     (&[-3.0, -2.0, 1.0, 4.0, -1.0, 0.5, 0.0, 5.0, 2.0, 0.5, 0.25, -3.0, 0.125, 0.25, 1.0], |n| {
         Primitive::Triangle { a: triple(&n[..3]), b: triple(&n[3..6]), c: triple(&n[6..]) }
     }),
-    (&[0.5, -1.0, 1.0, 0.5, 4.0, 1.0, 1.5, 0.5, 0.25, -3.0, 0.125, 0.25, 1.0], |n| Primitive::Cylinder {
-        bottom: triple(&n[..3]),
-        top: triple(&n[3..6]),
-        radius: n[6],
+    (&[0.5, -1.0, 1.0, 0.5, 4.0, 1.0, 1.5, 0.5, 0.25, -3.0, 0.125, 0.25, 1.0], |n| {
+        Primitive::Cylinder { bottom: triple(&n[..3]), top: triple(&n[3..6]), radius: n[6] }
     }),
 ];
 

@@ -85,15 +85,20 @@ impl fmt::Display for Formulas {
 
 /// A family of formulas, as the tracer is compiled for it.
 ///
-/// The first four give the smallest `t` that counts as a hit, or [`miss`](crate::ray::miss); so too for rays that
-/// are not in `wanted`, which need not be computed.
+/// The first four give the smallest `t` that counts as a hit, or [`miss`](crate::ray::miss); so too
+/// for rays that are not in `wanted`, which need not be computed.
 pub(crate) trait Family: Debug + Send + Sync + 'static {
-    /// Whether the formulas err by no more than a few roundings of the coordinates. Then boxes that are larger by
-    /// some more of them are missed by no hit, and nothing is hit behind a plane.
+    /// Whether the formulas err by no more than a few roundings of the coordinates. Then boxes that
+    /// are larger by some more of them are missed by no hit, and nothing is hit behind a plane.
     const FAITHFUL: bool;
 
     fn plane<L: Lane>(plane: &Plane<L::Scalar>, ray: &Ray<L>) -> L;
-    fn sphere<L: Lane>(sphere: &Sphere<L::Scalar>, ray: &Ray<L>, aim: &sphere::Aim<L>, wanted: L::Mask) -> L;
+    fn sphere<L: Lane>(
+        sphere: &Sphere<L::Scalar>,
+        ray: &Ray<L>,
+        aim: &sphere::Aim<L>,
+        wanted: L::Mask,
+    ) -> L;
     fn triangle<L: Lane>(
         triangle: &Triangle<L::Scalar>,
         ray: &Ray<L>,
@@ -110,7 +115,8 @@ pub(crate) trait Family: Debug + Send + Sync + 'static {
     /// What becomes of the hit `near` a surface, given the surface's own point next to it.
     fn settle<L: Lane>(near: Vector<L>, on_surface: SurfacePoint<L>) -> SurfacePoint<L>;
 
-    /// The ray along a path to a light, and the `t` that a surface has to be nearer than to hide it.
+    /// The ray along a path to a light, and the `t` that a surface has to be nearer than to hide
+    /// it.
     fn shadow_ray<L: Lane>(path: &LightPath<L>) -> (Ray<L>, L);
 }
 

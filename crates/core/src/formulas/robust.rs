@@ -23,7 +23,12 @@ impl Family for Robust {
     }
 
     #[inline(always)]
-    fn sphere<L: Lane>(sphere: &Sphere<L::Scalar>, ray: &Ray<L>, aim: &sphere::Aim<L>, wanted: L::Mask) -> L {
+    fn sphere<L: Lane>(
+        sphere: &Sphere<L::Scalar>,
+        ray: &Ray<L>,
+        aim: &sphere::Aim<L>,
+        wanted: L::Mask,
+    ) -> L {
         sphere.intersect(ray, aim, wanted)
     }
 
@@ -53,9 +58,9 @@ impl Family for Robust {
         on_surface
     }
 
-    /// `t` counts in the way to the light, and ends a little before 1: a surface that passes through
-    /// the light does not hide it. Where such a surface lies is known to about 16 roundings of the
-    /// coordinates of both ends, as in the clearance of a hit.
+    /// `t` counts in the way to the light, and ends a little before 1: a surface that passes
+    /// through the light does not hide it. Where such a surface lies is known to about 16 roundings
+    /// of the coordinates of both ends, as in the clearance of a hit.
     #[inline(always)]
     fn shadow_ray<L: Lane>(path: &LightPath<L>) -> (Ray<L>, L) {
         let uncertain = path.reach * path.inverse_distance * L::literal(16.0 * L::Scalar::ROUNDOFF);

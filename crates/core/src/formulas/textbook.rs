@@ -41,9 +41,9 @@ impl Family for Textbook {
         first_root(a, b, c, wanted, beyond_offset)
     }
 
-    /// The plane, then on which side of each edge the point lies: three cross products. The point is off
-    /// by some `4u` of its coordinates and `t |d|`, differently for each triangle: an edge that two share
-    /// may belong to neither.
+    /// The plane, then on which side of each edge the point lies: three cross products. The point
+    /// is off by some `4u` of its coordinates and `t |d|`, differently for each triangle: an edge
+    /// that two share may belong to neither.
     #[inline(always)]
     fn triangle<L: Lane>(
         triangle: &Triangle<L::Scalar>,
@@ -59,8 +59,9 @@ impl Family for Textbook {
             return miss();
         }
         let point = ray.at(t);
-        let within =
-            |from: Vector<L>, to: Vector<L>| L::literal(0.0).le(normal.dot((to - from).cross(point - from)));
+        let within = |from: Vector<L>, to: Vector<L>| {
+            L::literal(0.0).le(normal.dot((to - from).cross(point - from)))
+        };
         L::select(in_front & within(a, b) & within(b, c) & within(c, a), t, miss())
     }
 
@@ -106,9 +107,9 @@ fn plane_root<L: Lane>(point: Vector<L>, normal: Vector<L>, ray: &Ray<L>) -> L {
     normal.dot(point - ray.origin) / normal.dot(ray.direction)
 }
 
-/// The smaller of the roots of `a t^2 + b t + c` that counts. The discriminant cancels: its error is about
-/// `8u b^2`, whatever is left of it, and so may be all of the root. A ray along a cylinder's axis has
-/// `a = 0`, and NaN or infinities for roots.
+/// The smaller of the roots of `a t^2 + b t + c` that counts. The discriminant cancels: its error
+/// is about `8u b^2`, whatever is left of it, and so may be all of the root. A ray along a
+/// cylinder's axis has `a = 0`, and NaN or infinities for roots.
 #[inline(always)]
 fn first_root<L: Lane>(a: L, b: L, c: L, wanted: L::Mask, counts: impl Fn(L) -> L::Mask) -> L {
     let discriminant = b * b - L::literal(4.0) * a * c;

@@ -56,14 +56,21 @@ impl<S: Scalar> Cylinder<S> {
         Bounds::new(self.bottom - across, top + across)
     }
 
-    /// The smaller of the [roots](quadric::roots) above 0 that are on the wall: both are tried, because the
-    /// far wall is seen through the open end. The discriminant's error is the sphere's, in x and z.
+    /// The smaller of the [roots](quadric::roots) above 0 that are on the wall: both are tried,
+    /// because the far wall is seen through the open end. The discriminant's error is the sphere's,
+    /// in x and z.
     #[inline(always)]
-    pub(crate) fn intersect<L: Lane<Scalar = S>>(&self, ray: &Ray<L>, aim: &Aim<L>, wanted: L::Mask) -> L {
+    pub(crate) fn intersect<L: Lane<Scalar = S>>(
+        &self,
+        ray: &Ray<L>,
+        aim: &Aim<L>,
+        wanted: L::Mask,
+    ) -> L {
         let zero = L::literal(0.0);
         let radius_squared = L::splat(self.radius_squared);
         let Vector { x: dx, y: dy, z: dz } = ray.direction;
-        let (cx, cz) = (L::splat(self.bottom.x) - ray.origin.x, L::splat(self.bottom.z) - ray.origin.z);
+        let (cx, cz) =
+            (L::splat(self.bottom.x) - ray.origin.x, L::splat(self.bottom.z) - ray.origin.z);
         let closest = (cx * dx + cz * dz) * aim.inverse_square;
         let (ax, az) = (cx - dx * closest, cz - dz * closest);
         let discriminant = radius_squared - (ax * ax + az * az);
@@ -80,7 +87,8 @@ impl<S: Scalar> Cylinder<S> {
         }
         let (near, far) = quadric::roots(closest, discriminant, power, aim.inverse_square);
         // Differences first, as everywhere.
-        let (to_bottom, to_top) = (L::splat(self.bottom.y) - ray.origin.y, L::splat(self.top) - ray.origin.y);
+        let (to_bottom, to_top) =
+            (L::splat(self.bottom.y) - ray.origin.y, L::splat(self.top) - ray.origin.y);
         let on_wall = |t: L| {
             let climb = dy * t;
             zero.lt(t) & to_bottom.le(climb) & climb.le(to_top)

@@ -14,8 +14,9 @@ pub(crate) mod triangle;
 use crate::lane::Lane;
 use crate::vector::Vector;
 
-/// By how many roundings of the largest coordinates whatever rules a shape out is larger than the shape. Hits are off by
-/// 31 at the most: of a sphere, 12 in each of the coordinates and the radius, over three axes.
+/// By how many roundings of the largest coordinates whatever rules a shape out is larger than the
+/// shape. Hits are off by 31 at the most: of a sphere, 12 in each of the coordinates and the
+/// radius, over three axes.
 pub(crate) const MARGIN: f64 = 64.0;
 
 /// A point on a surface, with what rounding left uncertain about it.

@@ -30,8 +30,9 @@ impl<S: Scalar> Plane<S> {
     pub(crate) fn new(plane: &scene::Plane) -> Self {
         let normal = Vector::<S>::rounded(scene::near_one(plane.normal));
         let zero = S::literal(0.0);
-        let others_are_zero =
-            |axis: &usize| normal.to_array().iter().enumerate().all(|(i, n)| i == *axis || n.equals(zero));
+        let others_are_zero = |axis: &usize| {
+            normal.to_array().iter().enumerate().all(|(i, n)| i == *axis || n.equals(zero))
+        };
         let point = Vector::<S>::rounded(plane.point);
         let across = (0..3).find(others_are_zero).map(|axis| {
             let [normal, point] = [normal, point].map(|v| v.to_array()[axis]);
@@ -43,8 +44,9 @@ impl<S: Scalar> Plane<S> {
     /// `t = n . (point - origin) / n . d`: the difference first, so that a scene far from the
     /// origin of coordinates loses nothing. A parallel ray gives an infinity or NaN: a miss.
     ///
-    /// Relative error of `t`, counting roundings (Higham, Accuracy and Stability of Numerical Algorithms,
-    /// 2002, 3.1): at most `4u sum |n_i (point_i - o_i)| / |n . (point - o)| + 3u sum |n_i d_i| / |n . d| + u`.
+    /// Relative error of `t`, counting roundings (Higham, Accuracy and Stability of Numerical
+    /// Algorithms, 2002, 3.1): at most `4u sum |n_i (point_i - o_i)| / |n . (point - o)| + 3u sum
+    /// |n_i d_i| / |n . d| + u`.
     #[inline(always)]
     pub(crate) fn intersect<L: Lane<Scalar = S>>(&self, ray: &Ray<L>) -> L {
         let t = match self.across {

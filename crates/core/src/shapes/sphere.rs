@@ -46,11 +46,16 @@ impl<S: Scalar> Sphere<S> {
 
     /// The smaller of the [roots](quadric::roots) above 0.
     ///
-    /// The point nearest to the centre `c` of a ray from 0 is found to about `8u |c|`, and so the discriminant
-    /// to about `16u |c| / r` of `r^2`. In `b^2 - 4ac` it would be `8u (|c| / r)^2`: of a sphere 4,000 radii
-    /// away nothing is left of it in `f32`.
+    /// The point nearest to the centre `c` of a ray from 0 is found to about `8u |c|`, and so the
+    /// discriminant to about `16u |c| / r` of `r^2`. In `b^2 - 4ac` it would be `8u (|c| / r)^2`:
+    /// of a sphere 4,000 radii away nothing is left of it in `f32`.
     #[inline(always)]
-    pub(crate) fn intersect<L: Lane<Scalar = S>>(&self, ray: &Ray<L>, aim: &Aim<L>, wanted: L::Mask) -> L {
+    pub(crate) fn intersect<L: Lane<Scalar = S>>(
+        &self,
+        ray: &Ray<L>,
+        aim: &Aim<L>,
+        wanted: L::Mask,
+    ) -> L {
         let zero = L::literal(0.0);
         let radius_squared = L::splat(self.radius_squared);
         let to_center = Vector::splat(self.center) - ray.origin;
@@ -61,7 +66,8 @@ impl<S: Scalar> Sphere<S> {
         if !crossed.any() {
             return miss();
         }
-        // What is left of the point along the ray is the error of `closest`: it is told at little cost.
+        // What is left of the point along the ray is the error of `closest`: it is told at little
+        // cost.
         let closest = closest + aside.dot(ray.direction) * aim.inverse_square;
         let power = to_center.dot(to_center) - radius_squared;
         // Behind a ray that starts outside: both roots are below 0.

@@ -11,16 +11,16 @@ use glam::DVec3;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Triangle<S> {
     pub(crate) vertices: [Vector<S>; 3],
-    /// Of a length near 1, but not made unit, which would cost digits; or zero when rounding took the
-    /// triangle's area: then no ray hits it.
+    /// Of a length near 1, but not made unit, which would cost digits; or zero when rounding took
+    /// the triangle's area: then no ray hits it.
     pub(crate) normal: Vector<S>,
     unit_normal: Vector<S>,
     /// The largest magnitude of each coordinate.
     reach: Vector<S>,
 }
 
-/// What all triangles ask of rays that are longest along one axis: the shear that turns them into the axis along which they are
-/// longest. Triangles are then tested in the two other coordinates.
+/// What all triangles ask of rays that are longest along one axis: the shear that turns them into
+/// the axis along which they are longest. Triangles are then tested in the two other coordinates.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Aim<L> {
     /// The axes in the order in which coordinates are taken.
@@ -47,8 +47,8 @@ impl<L: Lane> Aim<L> {
         Self { order, origin: order.map(|axis| origin[axis]), shear: [x / z, y / z], along: z }
     }
 
-    /// Where `v` lies aside of the ray, and how far along the axis. The same rounded point for every
-    /// triangle that shares `v`.
+    /// Where `v` lies aside of the ray, and how far along the axis. The same rounded point for
+    /// every triangle that shares `v`.
     #[inline(always)]
     fn project(&self, v: Vector<L::Scalar>) -> [L; 3] {
         let coordinates = v.to_array();
@@ -70,7 +70,12 @@ impl<S: Scalar> Triangle<S> {
         };
         let unit_normal = normal.normalize_or_zero();
         let [normal, unit_normal] = [normal, unit_normal].map(Vector::rounded);
-        Self { vertices, normal, unit_normal, reach: Vector::rounded(a.abs().max(b.abs()).max(c.abs())) }
+        Self {
+            vertices,
+            normal,
+            unit_normal,
+            reach: Vector::rounded(a.abs().max(b.abs()).max(c.abs())),
+        }
     }
 
     pub(crate) fn bounds(&self) -> Bounds<S> {
@@ -80,15 +85,21 @@ impl<S: Scalar> Triangle<S> {
 
     /// The edge test of Woop, Benthin and Wald (Watertight Ray/Triangle Intersection, JCGT 2013):
     /// signs of 2 x 2 determinants of projected corners, which are the same from both sides of a
-    /// shared edge. `t` is that of the plane, differences first, its sums in twice the digits, since few
-    /// rays come that far; where the ray grazes the plane it is mostly noise all the same, so it is kept
-    /// between those of the corners.
+    /// shared edge. `t` is that of the plane, differences first, its sums in twice the digits,
+    /// since few rays come that far; where the ray grazes the plane it is mostly noise all the
+    /// same, so it is kept between those of the corners.
     ///
-    /// The corners are projected to within `3u` of their coordinates, and then every sign is exact. Relative
-    /// error of `t` in `f32`, whose corners `f64` turns into a normal without a loss: at most `2u sum |n_i (a_i - o_i)| / |n . (a - o)| + u sum |n_i d_i| / |n . d| + 3u`: the
+    /// The corners are projected to within `3u` of their coordinates, and then every sign is exact.
+    /// Relative error of `t` in `f32`, whose corners `f64` turns into a normal without a loss: at
+    /// most `2u sum |n_i (a_i - o_i)| / |n . (a - o)| + u sum |n_i d_i| / |n . d| + 3u`: the
     /// rounded normal and differences, then two sums and a quotient rounded once.
     #[inline(always)]
-    pub(crate) fn intersect<L: Lane<Scalar = S>>(&self, ray: &Ray<L>, aim: &Aim<L>, wanted: L::Mask) -> L {
+    pub(crate) fn intersect<L: Lane<Scalar = S>>(
+        &self,
+        ray: &Ray<L>,
+        aim: &Aim<L>,
+        wanted: L::Mask,
+    ) -> L {
         let zero = L::literal(0.0);
         // Written out: a `map` over an array is not always inlined.
         let [a, b, c] = self.vertices;
@@ -116,6 +127,10 @@ impl<S: Scalar> Triangle<S> {
     pub(crate) fn surface<L: Lane<Scalar = S>>(&self, near: Vector<L>) -> SurfacePoint<L> {
         let normal = Vector::splat(self.unit_normal);
         let point = near - normal * normal.dot(near - Vector::splat(self.vertices[0]));
-        SurfacePoint { point, normal, clearance: clearance(normal, point, Vector::splat(self.reach)) }
+        SurfacePoint {
+            point,
+            normal,
+            clearance: clearance(normal, point, Vector::splat(self.reach)),
+        }
     }
 }

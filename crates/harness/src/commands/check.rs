@@ -2,7 +2,8 @@
 
 use crate::input::Input;
 use crate::options::{
-    SceneOptions, all_threads, checked_tile, chosen, distinct, left_out_line, parse_threads, strategy_parser,
+    SceneOptions, all_threads, checked_tile, chosen, distinct, left_out_line, parse_threads,
+    strategy_parser,
 };
 use crate::output::{PendingFile, distinct_files};
 use crate::{Outcome, print, progress};
@@ -36,7 +37,8 @@ pub struct Arguments {
     options: SceneOptions,
 }
 
-/// Pictures in which rows, columns or tiles come out uneven, or there are fewer pixels than threads.
+/// Pictures in which rows, columns or tiles come out uneven, or there are fewer pixels than
+/// threads.
 const AWKWARD_SIZES: [(u32, u32); 5] = [(1, 1), (1, 50), (50, 1), (7, 3), (97, 61)];
 
 pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
@@ -45,13 +47,20 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let input = Input::load(arguments.scene.as_deref(), &arguments.options)?;
     // Before anything is checked: whether the full picture can be made at all.
     input.picture()?;
-    arguments.tile.iter().try_for_each(|&tile| checked_tile(tile, input.width, input.height).map(drop))?;
+    arguments
+        .tile
+        .iter()
+        .try_for_each(|&tile| checked_tile(tile, input.width, input.height).map(drop))?;
     let strategies = chosen(&arguments.strategy);
 
     let mut verdict = Verdict { checked: Vec::new(), compared: 0, findings: Vec::new() };
-    let mut check = |sizes: &[(u32, u32)], threads: &[usize], tiles: &[u32]| -> Result<(), String> {
+    let mut check = |sizes: &[(u32, u32)],
+                     threads: &[usize],
+                     tiles: &[u32]|
+     -> Result<(), String> {
         let cases = sizes.iter().map(|&size| case(&input, size)).collect::<Result<Vec<_>, _>>()?;
-        let threads = or_default(&arguments.threads, threads.iter().copied().filter_map(NonZeroUsize::new));
+        let threads =
+            or_default(&arguments.threads, threads.iter().copied().filter_map(NonZeroUsize::new));
         let tiles = or_default(&arguments.tile, tiles.iter().copied().filter_map(NonZeroU32::new));
         let part = run_with_bar(&Check {
             reference: rayweave_registry::reference(),

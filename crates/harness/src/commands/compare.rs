@@ -4,8 +4,8 @@ use crate::child::Children;
 use crate::input::Input;
 use crate::interrupt::Interrupt;
 use crate::options::{
-    SceneOptions, SharingOption, TileOption, all_threads, chosen, distinct, left_out_line, parse_percent,
-    parse_seconds, parse_threads, strategy_parser,
+    SceneOptions, SharingOption, TileOption, all_threads, chosen, distinct, left_out_line,
+    parse_percent, parse_seconds, parse_threads, strategy_parser,
 };
 use crate::output::{PendingFile, distinct_files, named_twice};
 use crate::watched::watched;
@@ -42,11 +42,12 @@ pub struct Options {
     threads: Vec<NonZeroUsize>,
     #[command(flatten)]
     tile: TileOption,
-    /// Measure until each speed-up is known so well: half of its interval, as a share of it; or until time is up
+    /// Measure until each speed-up is known so well: half of its interval, as a share of it; or
+    /// until time is up
     #[arg(long, value_name = "PERCENT", value_parser = parse_percent)]
     precision_goal: Option<f64>,
-    /// Begin no round after 8 that would end later than this; without this option 40 rounds are enough, or
-    /// two and a half minutes
+    /// Begin no round after 8 that would end later than this; without this option 40 rounds are
+    /// enough, or two and a half minutes
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
     time_limit: Option<Duration>,
     /// Write the result as JSON, raw samples included
@@ -55,14 +56,15 @@ pub struct Options {
     /// Write the table as CSV
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Compare on several scenes beside each other: scene files, or `all` for those in scenes/loads, which
-    /// separate the strategies. The time limit is for all together
+    /// Compare on several scenes beside each other: scene files, or `all` for those in
+    /// scenes/loads, which separate the strategies. The time limit is for all together
     #[arg(long, value_name = "FILE", value_delimiter = ',')]
     scenes: Vec<PathBuf>,
     /// Write the table as Markdown
     #[arg(long, value_name = "FILE")]
     markdown: Option<PathBuf>,
-    /// Say what has changed since an earlier run of the same scene with the same settings, by the JSON that it wrote
+    /// Say what has changed since an earlier run of the same scene with the same settings, by the
+    /// JSON that it wrote
     #[arg(long, value_name = "FILE")]
     baseline: Option<PathBuf>,
     #[command(flatten)]
@@ -76,7 +78,9 @@ pub fn run(scene: Option<&Path>, options: &Options) -> Result<Outcome, String> {
     let scenes = scenes(scene, options)?;
     let single = options.scenes.is_empty() && options.scene_options.share_samples.single().is_ok();
     if options.baseline.is_some() && !single {
-        return Err("--baseline needs one table: a single scene, and --share-samples on or off".to_owned());
+        return Err(
+            "--baseline needs one table: a single scene, and --share-samples on or off".to_owned()
+        );
     }
     let files = Files::create(&scenes, options)?;
     let baseline = options.baseline.as_deref().map(read_baseline).transpose()?;
@@ -101,9 +105,12 @@ pub fn run(scene: Option<&Path>, options: &Options) -> Result<Outcome, String> {
     let left_out = left_out_line(&options.strategy);
     let below = format!("\n{}\n{skipped}{left_out}", first.input.arithmetic_line());
     if !options.scenes.is_empty() {
-        let reports: Vec<Report<'_>> = measured.iter().map(|measured| measured.report(0, None)).collect();
-        let loads: Vec<&Load> = measured.iter().filter_map(|measured| measured.load.as_ref()).collect();
-        let not_measured = scenes[measured.len()..].iter().flatten().map(|path| path.display().to_string());
+        let reports: Vec<Report<'_>> =
+            measured.iter().map(|measured| measured.report(0, None)).collect();
+        let loads: Vec<&Load> =
+            measured.iter().filter_map(|measured| measured.load.as_ref()).collect();
+        let not_measured =
+            scenes[measured.len()..].iter().flatten().map(|path| path.display().to_string());
         let not_measured: Vec<String> = not_measured.collect();
         let all = ScenesReport { reports: &reports, loads: &loads, not_measured: &not_measured };
         print(&format!("{}\n{left_out}", all.table()))?;
@@ -118,7 +125,8 @@ pub fn run(scene: Option<&Path>, options: &Options) -> Result<Outcome, String> {
         files.finish(&report.json(), &report.csv(), &report.markdown())?;
     }
     let comparisons = || measured.iter().flat_map(|measured| &measured.comparisons);
-    let interrupted = measured.len() < scenes.len() || comparisons().any(|comparison| comparison.interrupted);
+    let interrupted =
+        measured.len() < scenes.len() || comparisons().any(|comparison| comparison.interrupted);
     let hold = comparisons().all(Comparison::holds);
     Ok(match (hold, interrupted) {
         (false, _) => Outcome::Failed,
@@ -142,7 +150,8 @@ fn scenes(scene: Option<&Path>, options: &Options) -> Result<Vec<Option<PathBuf>
                 )
             };
             let entries = fs::read_dir(LOADS).map_err(cannot)?;
-            let mut files: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+            let mut files: Vec<PathBuf> =
+                entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
             files.retain(|file| file.extension().is_some_and(|extension| extension == "toml"));
             files.sort();
             if files.is_empty() {
@@ -224,7 +233,8 @@ fn load(scene: Option<&Path>, options: &Options) -> Result<Input, String> {
     let settings = &input.scene.render;
     if ways.len() > 1 && (!settings.has_lattice() || settings.adaptive) {
         return Err(
-            "--share-samples both: without a lattice, or with an adaptive one, there is no choice".to_owned()
+            "--share-samples both: without a lattice, or with an adaptive one, there is no choice"
+                .to_owned(),
         );
     }
     if let Some(path) = scene.filter(|path| !path.is_file()) {
@@ -281,7 +291,8 @@ fn measure(
 ) -> Result<Measured, Unmeasured> {
     let ways = ways(options);
     let tile = options.tile.of(input.width, input.height)?;
-    let children = ways.iter().map(|&way| Children::new(scene, &options.scene_options, way, tile, interrupt));
+    let children =
+        ways.iter().map(|&way| Children::new(scene, &options.scene_options, way, tile, interrupt));
     let mut children = children.collect::<Result<Vec<Children>, _>>()?;
     let mut executors: Vec<&mut dyn Executor> =
         children.iter_mut().map(|children| children as &mut dyn Executor).collect();
@@ -292,7 +303,10 @@ fn measure(
     let (comparisons, machine, noise) = watched(|bar| {
         protocol.run_together(reference, &entries(options), &mut executors, |progress| {
             // Drawn here and nowhere else: between the timed spans.
-            bar.show(progress.fraction, format!("{}, threads: {}", progress.strategy, progress.threads));
+            bar.show(
+                progress.fraction,
+                format!("{}, threads: {}", progress.strategy, progress.threads),
+            );
         })
     });
     let comparisons = comparisons.map_err(|error| match error {
@@ -312,8 +326,11 @@ fn load_of(input: &Input, tile: NonZeroU32) -> Result<Load, String> {
 /// What is compared with the reference.
 fn entries(options: &Options) -> Vec<Entry<'static>> {
     let strategies = chosen(&options.strategy);
-    let threads =
-        if options.threads.is_empty() { vec![all_threads()] } else { distinct(&options.threads, |n| *n) };
+    let threads = if options.threads.is_empty() {
+        vec![all_threads()]
+    } else {
+        distinct(&options.threads, |n| *n)
+    };
     let pairs = strategies.iter().flat_map(|&strategy| threads.iter().map(move |&n| (strategy, n)));
     pairs.map(|(strategy, threads)| Entry { strategy, threads }).collect()
 }
@@ -333,7 +350,8 @@ fn protocol(options: &Options, ways: usize, scenes: usize) -> Protocol {
 }
 
 fn subject(input: &Input, share_samples: bool, tile: NonZeroU32) -> Subject {
-    let Execution { arithmetic: Arithmetic { formulas, precision }, lanes, search, .. } = input.execution;
+    let Execution { arithmetic: Arithmetic { formulas, precision }, lanes, search, .. } =
+        input.execution;
     Subject {
         scene: input.name.clone(),
         width: input.width,

@@ -23,8 +23,8 @@ use std::time::Duration;
 pub struct Arguments {
     /// Scene file [default: the report's scene, built in]
     scene: Option<PathBuf>,
-    /// Size of the pictures in pixels, each 1..=65535 [default: the scene's shape in 3600 pixels, or
-    /// fewer if it takes long]
+    /// Size of the pictures in pixels, each 1..=65535 [default: the scene's shape in 3600 pixels,
+    /// or fewer if it takes long]
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     size: Option<(u32, u32)>,
     /// Name the fastest setting with this PSNR or more
@@ -48,12 +48,18 @@ pub struct Arguments {
 /// Pixels of a picture, at most, unless a size is asked for.
 const PIXELS: f64 = 3600.0;
 
-/// The longest that a round may take, as estimated: six of them, and the warm-up, in under two minutes.
+/// The longest that a round may take, as estimated: six of them, and the warm-up, in under two
+/// minutes.
 const ROUND: Duration = Duration::from_secs(12);
 
 /// Six rounds, for a 95 % interval, and no more of them than fit into a minute.
-const PROTOCOL: Protocol =
-    Protocol { min_rounds: 6, max_rounds: 20, budget: Duration::from_secs(60), goal: None, seed: 1 };
+const PROTOCOL: Protocol = Protocol {
+    min_rounds: 6,
+    max_rounds: 20,
+    budget: Duration::from_secs(60),
+    goal: None,
+    seed: 1,
+};
 
 /// The side of a tile of an untimed picture: small, because the pictures are.
 const TILE: NonZeroU32 = NonZeroU32::new(8).expect("8 is not 0");
@@ -71,9 +77,14 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
 
     let bar = Share::new();
     bar.show(0.0, "reference");
-    let experiment =
-        Experiment { scene: &scene, size, strategy: rayweave_registry::reference(), protocol: PROTOCOL };
-    let study = experiment.run(|work| render(work, size), |fraction| bar.show(fraction, "settings"));
+    let experiment = Experiment {
+        scene: &scene,
+        size,
+        strategy: rayweave_registry::reference(),
+        protocol: PROTOCOL,
+    };
+    let study =
+        experiment.run(|work| render(work, size), |fraction| bar.show(fraction, "settings"));
     drop(bar);
     let study = study.map_err(|e| format!("{name}: {e}"))?;
 
@@ -98,17 +109,20 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     Ok(if study.repeatable { Outcome::Held } else { Outcome::Failed })
 }
 
-/// The scene's shape in [`PIXELS`] pixels, or in a half, a quarter ... of them if all settings would take
-/// too long.
+/// The scene's shape in [`PIXELS`] pixels, or in a half, a quarter ... of them if all settings
+/// would take too long.
 fn default_size(scene: &Scene, image: ImageSize) -> Result<(u32, u32), String> {
     let mut pixels = PIXELS;
     let pilot = shrunk(image, PIXELS / 4.0);
     let setting = Setting { arithmetic: EXACT, ..Setting::report(scene.render.max_reflections) };
-    let nanoseconds = timed(rayweave_registry::reference(), &setting, scene, pilot)?.nanoseconds as f64;
+    let nanoseconds =
+        timed(rayweave_registry::reference(), &setting, scene, pilot)?.nanoseconds as f64;
     let per_ray = nanoseconds / (f64::from(pilot.0 * pilot.1 * setting.rays_per_pixel()));
     let rays: u32 = Setting::all(scene).iter().map(Setting::rays_per_pixel).sum();
     let area = |(width, height): (u32, u32)| f64::from(width) * f64::from(height);
-    while pixels > 1.0 && area(shrunk(image, pixels)) * f64::from(rays) * per_ray > ROUND.as_nanos() as f64 {
+    while pixels > 1.0
+        && area(shrunk(image, pixels)) * f64::from(rays) * per_ray > ROUND.as_nanos() as f64
+    {
         pixels /= 2.0;
     }
     Ok(shrunk(image, pixels))
@@ -138,7 +152,12 @@ fn reference_file(folder: &Path) -> Result<PendingFile, String> {
 }
 
 /// What is worth a look: the picture and its difference from the truth.
-fn write_pictures(folder: &Path, scene: &Scene, study: &Study, size: (u32, u32)) -> Result<(), String> {
+fn write_pictures(
+    folder: &Path,
+    scene: &Scene,
+    study: &Study,
+    size: (u32, u32),
+) -> Result<(), String> {
     let write = |name: &str, picture: &Image| {
         PendingFile::create(&folder.join(name))?.finish(&Format::Png.encode(picture)?)
     };

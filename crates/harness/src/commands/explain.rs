@@ -31,17 +31,19 @@ pub struct Arguments {
     threads: Option<NonZeroUsize>,
     #[command(flatten)]
     tile: TileOption,
-    /// Begin no round after 6 that would end later than this, all strategies together; without this option 200 rounds are
-    /// enough, or 20 seconds a strategy
+    /// Begin no round after 6 that would end later than this, all strategies together; without this
+    /// option 200 rounds are enough, or 20 seconds a strategy
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
     time_limit: Option<Duration>,
     /// Write the result as JSON
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// Write the time lines in the trace event format, for Perfetto (ui.perfetto.dev) or chrome://tracing
+    /// Write the time lines in the trace event format, for Perfetto (ui.perfetto.dev) or
+    /// chrome://tracing
     #[arg(long, value_name = "FILE")]
     trace: Option<PathBuf>,
-    /// Write of each strategy the time line, who computed which pixel, and what each cost into this folder
+    /// Write of each strategy the time line, who computed which pixel, and what each cost into this
+    /// folder
     #[arg(long, value_name = "FOLDER")]
     pictures: Option<PathBuf>,
     #[command(flatten)]
@@ -49,23 +51,31 @@ pub struct Arguments {
 }
 
 /// A strategy takes three renderings a round, one of them on a single thread.
-const PROTOCOL: Protocol =
-    Protocol { min_rounds: 6, max_rounds: 200, budget: Duration::from_secs(20), goal: None, seed: 1 };
+const PROTOCOL: Protocol = Protocol {
+    min_rounds: 6,
+    max_rounds: 200,
+    budget: Duration::from_secs(20),
+    goal: None,
+    seed: 1,
+};
 
 pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     distinct_files(&[&arguments.scene, &arguments.json, &arguments.trace])?;
-    let [json, trace] =
-        [&arguments.json, &arguments.trace].map(|path| path.as_deref().map(PendingFile::create).transpose());
+    let [json, trace] = [&arguments.json, &arguments.trace]
+        .map(|path| path.as_deref().map(PendingFile::create).transpose());
     let (json, trace) = (json?, trace?);
     let input = Input::load(arguments.scene.as_deref(), &arguments.options)?;
     let (width, height) = input.recordable_size()?;
     let recommended = [rayweave_registry::recommended()];
-    let strategies =
-        distinct(if arguments.strategy.is_empty() { &recommended } else { &arguments.strategy }, |s| {
-            s.name()
-        });
-    let pictures =
-        arguments.pictures.as_deref().map(|folder| picture_files(folder, &strategies)).transpose()?;
+    let strategies = distinct(
+        if arguments.strategy.is_empty() { &recommended } else { &arguments.strategy },
+        |s| s.name(),
+    );
+    let pictures = arguments
+        .pictures
+        .as_deref()
+        .map(|folder| picture_files(folder, &strategies))
+        .transpose()?;
     let tile = arguments.tile.of(width, height)?;
     let work = input.work(width, height)?;
     let protocol = Protocol { budget: PROTOCOL.budget * strategies.len() as u32, ..PROTOCOL };
@@ -132,7 +142,9 @@ fn picture_files(folder: &Path, strategies: &[&dyn Strategy]) -> Result<Vec<Pict
 fn write_pictures(files: Vec<PictureFiles>, report: &Report<'_>) -> Result<(), String> {
     for (files, row) in files.into_iter().zip(&report.explanation.rows) {
         files.timeline.finish(report.timeline(row)?.as_bytes())?;
-        files.owners.finish(&Format::Png.encode(&report.owners(row).map_err(|e| e.to_string())?)?)?;
+        files
+            .owners
+            .finish(&Format::Png.encode(&report.owners(row).map_err(|e| e.to_string())?)?)?;
         files.cost.finish(report.cost(row)?.as_bytes())?;
     }
     Ok(())

@@ -48,10 +48,12 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     };
     let arithmetic = Arithmetic { formulas: arguments.formulas.into(), precision };
 
-    let prepared: Vec<Prepared> = cases.iter().map(|case| Prepared::new(case, arithmetic)).collect();
+    let prepared: Vec<Prepared> =
+        cases.iter().map(|case| Prepared::new(case, arithmetic)).collect();
     let found: Vec<_> = prepared.iter().map(Prepared::outcome).collect();
     let mut lines = Vec::new();
-    outcomes::write(&mut lines, &found).map_err(|e| format!("the results cannot be written: {e}"))?;
+    outcomes::write(&mut lines, &found)
+        .map_err(|e| format!("the results cannot be written: {e}"))?;
     let scores = score(&cases, &found);
     let time = |score: &FamilyScore| {
         let family = cases.iter().zip(&prepared).filter(|(case, _)| case.family == score.family);
@@ -70,6 +72,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
             let _ = write!(io::stderr(), "{table}");
         }
     }
-    let wrong = scores.iter().any(|score| score.wrong > 0 || score.leaks > 0 || score.non_finite > 0);
+    let wrong =
+        scores.iter().any(|score| score.wrong > 0 || score.leaks > 0 || score.non_finite > 0);
     Ok(if wrong { Outcome::Failed } else { Outcome::Held })
 }

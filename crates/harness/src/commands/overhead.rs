@@ -21,8 +21,8 @@ pub struct Arguments {
     /// Number of computing threads [default: what the machine and its quota allow]
     #[arg(long, value_name = "N", value_parser = parse_threads)]
     threads: Option<NonZeroUsize>,
-    /// Begin no round after 6 that would end later than this; without this option 20 rounds are enough, or
-    /// 20 seconds
+    /// Begin no round after 6 that would end later than this; without this option 20 rounds are
+    /// enough, or 20 seconds
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
     time_limit: Option<Duration>,
     /// Write the result as JSON
@@ -31,8 +31,13 @@ pub struct Arguments {
 }
 
 /// Six rounds, for a 95 % interval, and up to 20 if they fit into 20 seconds.
-const PROTOCOL: Protocol =
-    Protocol { min_rounds: 6, max_rounds: 20, budget: Duration::from_secs(20), goal: None, seed: 1 };
+const PROTOCOL: Protocol = Protocol {
+    min_rounds: 6,
+    max_rounds: 20,
+    budget: Duration::from_secs(20),
+    goal: None,
+    seed: 1,
+};
 
 pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let json = arguments.json.as_deref().map(PendingFile::create).transpose()?;

@@ -2,7 +2,8 @@
 
 use crate::input::Input;
 use crate::options::{
-    SceneOptions, TileOption, all_threads, chosen, parse_seconds, parse_thread_counts, strategy_parser,
+    SceneOptions, TileOption, all_threads, chosen, parse_seconds, parse_thread_counts,
+    strategy_parser,
 };
 use crate::output::{PendingFile, distinct_files};
 use crate::watched::watched;
@@ -23,13 +24,14 @@ pub struct Arguments {
     /// Strategies to predict [default: all that start threads]
     #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = strategy_parser())]
     strategy: Vec<&'static dyn Strategy>,
-    /// Numbers of computing threads, each 1..=1024: a list, in which A..B stands for A, B and the powers of two between
+    /// Numbers of computing threads, each 1..=1024: a list, in which A..B stands for A, B and the
+    /// powers of two between
     #[arg(long, value_name = "N,A..B", value_delimiter = ',', value_parser = parse_thread_counts, default_value = "1..64")]
     threads: Vec<Counts>,
     #[command(flatten)]
     tile: TileOption,
-    /// Begin no round after 8 that would end later than this, the overheads of threads not counted; without this option 40
-    /// rounds are enough, or two and a half minutes
+    /// Begin no round after 8 that would end later than this, the overheads of threads not counted;
+    /// without this option 40 rounds are enough, or two and a half minutes
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
     time_limit: Option<Duration>,
     /// Write the result as JSON

@@ -37,7 +37,8 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
-    let path = arguments.output.clone().unwrap_or_else(|| default_output(arguments.scene.as_deref()));
+    let path =
+        arguments.output.clone().unwrap_or_else(|| default_output(arguments.scene.as_deref()));
     distinct_files(&[&arguments.scene, &Some(path.clone())])?;
     let format = Format::of(&path)?;
     let file = PendingFile::create(&path)?;

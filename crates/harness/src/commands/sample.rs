@@ -1,4 +1,5 @@
-//! `rayweave sample`: what `compare` starts for each of its samples. Not for people, so `--help` does not list it.
+//! `rayweave sample`: what `compare` starts for each of its samples. Not for people, so `--help`
+//! does not list it.
 
 use crate::child::{Answer, Rendered};
 use crate::input::Input;
@@ -56,7 +57,8 @@ fn measure(arguments: &Arguments) -> Result<Rendered, String> {
     Ok(Rendered::from((stopwatch.one_shot_and_again(&entry)?, None)))
 }
 
-/// Whatever ends the parent, this process does not go on computing beside what somebody measures next.
+/// Whatever ends the parent, this process does not go on computing beside what somebody measures
+/// next.
 fn end_with_parent() {
     #[cfg(target_os = "linux")]
     // Where it is refused, the process ends by itself when it has rendered.

@@ -14,7 +14,12 @@ pub fn run() -> Result<Outcome, String> {
             ThreadsStart::Prepare => "threads started once, before rendering",
             ThreadsStart::Render => "threads started within each rendering",
         };
-        text += &format!("{:width$}  {}\n{:width$}  {threads}\n", strategy.name(), strategy.summary(), "");
+        text += &format!(
+            "{:width$}  {}\n{:width$}  {threads}\n",
+            strategy.name(),
+            strategy.summary(),
+            ""
+        );
         // Tried out, not guessed: what cannot be prepared here says why.
         let plan = Plan { threads: NonZeroUsize::MIN, tile: NonZeroU32::MIN };
         let failure = || strategy.prepare(plan).err().map(|error| error.to_string());

@@ -12,13 +12,14 @@ fn interrupted_in(call: usize) -> Result<Comparison, CompareError> {
         if calls == call { Err("killed".to_owned()) } else { right(1) }
     });
     executor.interrupted_in = call;
-    let result = protocol(8, 10, u64::MAX).run(&REFERENCE, &[entry(&QUEUE, 4)], &mut executor, |_| {});
+    let result =
+        protocol(8, 10, u64::MAX).run(&REFERENCE, &[entry(&QUEUE, 4)], &mut executor, |_| {});
     assert_eq!(executor.calls.len(), call, "it went on");
     result
 }
 
-/// Catches the rounds before thrown away, those of the broken round counted, and a rendering that was killed told as
-/// a failure, wherever in a round it is.
+/// Catches the rounds before thrown away, those of the broken round counted, and a rendering that
+/// was killed told as a failure, wherever in a round it is.
 #[test]
 fn what_is_interrupted_is_of_the_complete_rounds() {
     for turn in 0..3 {

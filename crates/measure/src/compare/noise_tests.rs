@@ -1,4 +1,5 @@
-//! What the protocol finds out in spite of noise: many comparisons of renderings whose times are made up.
+//! What the protocol finds out in spite of noise: many comparisons of renderings whose times are
+//! made up.
 
 use super::tests::{Named, QUEUE, REFERENCE, entry, picture};
 use super::*;
@@ -39,7 +40,8 @@ impl Executor for Noisy {
     }
 }
 
-/// The comparisons that `count` runs give, of a queue that takes `slowdown` times as long as the reference.
+/// The comparisons that `count` runs give, of a queue that takes `slowdown` times as long as the
+/// reference.
 fn runs(count: u64, protocol: Protocol, slowdown: f64) -> Vec<Comparison> {
     let run = |seed| {
         let mut executor = Noisy { random: SplitMix64::new(seed), clock: 0.0, slowdown };
@@ -57,8 +59,8 @@ fn contain_one(intervals: &[Interval]) -> usize {
 const ROUNDS: Protocol =
     Protocol { min_rounds: 20, max_rounds: 20, budget: Duration::MAX, goal: None, seed: 0 };
 
-/// 19 of 20 runs, of 2 % or less: catches rows that are measured one after the other, where drift is taken for
-/// a difference, as well as intervals that are too narrow or too wide.
+/// 19 of 20 runs, of 2 % or less: catches rows that are measured one after the other, where drift
+/// is taken for a difference, as well as intervals that are too narrow or too wide.
 #[test]
 fn the_control_has_one_in_its_interval() {
     let controls: Vec<Interval> =
@@ -84,8 +86,12 @@ fn three_percent_are_found() {
 #[test]
 fn a_goal_ends_the_rounds_and_keeps_the_promise() {
     let goal = 0.01;
-    let protocol =
-        Protocol { goal: Some(goal), max_rounds: usize::MAX, budget: Duration::MAX, ..Protocol::default() };
+    let protocol = Protocol {
+        goal: Some(goal),
+        max_rounds: usize::MAX,
+        budget: Duration::MAX,
+        ..Protocol::default()
+    };
     let runs = runs(200, protocol, 1.0);
     for run in &runs {
         assert!(run.rounds >= protocol.min_rounds);
@@ -107,7 +113,11 @@ fn a_row_that_failed_is_waited_for_by_nobody() {
 
     impl Executor for Fails {
         fn render(&mut self, entry: &Entry<'_>) -> Result<Rendering, String> {
-            if entry.strategy.name() == BROKEN.name() { Err("gone".to_owned()) } else { self.0.render(entry) }
+            if entry.strategy.name() == BROKEN.name() {
+                Err("gone".to_owned())
+            } else {
+                self.0.render(entry)
+            }
         }
 
         fn elapsed(&self) -> Duration {
@@ -118,6 +128,7 @@ fn a_row_that_failed_is_waited_for_by_nobody() {
     static BROKEN: &Named = &QUEUE;
     let protocol = Protocol { goal: Some(0.05), max_rounds: 1000, budget: Duration::MAX, ..ROUNDS };
     let mut executor = Fails(Noisy { random: SplitMix64::new(1), clock: 0.0, slowdown: 1.0 });
-    let run = protocol.run(&REFERENCE, &[entry(BROKEN, 1)], &mut executor, |_| {}).expect("a picture");
+    let run =
+        protocol.run(&REFERENCE, &[entry(BROKEN, 1)], &mut executor, |_| {}).expect("a picture");
     assert_eq!(run.rounds, 20);
 }

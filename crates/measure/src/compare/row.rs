@@ -39,7 +39,8 @@ pub struct Row {
     pub rule: Rule,
     /// Whether there is a picture, and every picture was the reference's.
     pub identical: bool,
-    /// Of the first picture that was not the reference's, or else of all of them; `None` without any.
+    /// Of the first picture that was not the reference's, or else of all of them; `None` without
+    /// any.
     pub digest: Option<Digest>,
     /// Why the strategy failed.
     pub error: Option<String>,
@@ -97,7 +98,11 @@ impl Row {
     }
 
     /// Takes note of a rendering that is no sample.
-    pub(super) fn warm_up(&mut self, result: Result<(Rendering, Option<Rays>), String>, expected: Digest) {
+    pub(super) fn warm_up(
+        &mut self,
+        result: Result<(Rendering, Option<Rays>), String>,
+        expected: Digest,
+    ) {
         let rays = result.as_ref().ok().and_then(|(_, rays)| *rays);
         let sample = self.verify(result.map(|(rendering, _)| rendering), expected);
         self.rays = rays.filter(|_| sample.is_some());
@@ -172,7 +177,9 @@ impl Row {
 
 /// Gives the rows, of which the reference is the first, their figures.
 pub(super) fn with_figures(mut rows: Vec<Row>) -> Vec<Row> {
-    let Some(reference) = rows.first().filter(|reference| reference.holds()).cloned() else { return rows };
+    let Some(reference) = rows.first().filter(|reference| reference.holds()).cloned() else {
+        return rows;
+    };
     for row in rows.iter_mut().filter(|row| row.holds()) {
         row.figures = row.figures(&reference);
     }

@@ -1,7 +1,9 @@
 //! The protocol's logic, with a clock and renderings that are made up.
 
 use super::*;
-use rayweave_contract::{Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, StrategyError, ThreadsStart};
+use rayweave_contract::{
+    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, StrategyError, ThreadsStart,
+};
 use std::cell::RefCell;
 
 /// Never asked to render: the executor makes up what it would do.
@@ -21,7 +23,11 @@ impl Strategy for Named {
     }
 
     fn rule(&self) -> Rule {
-        Rule { piece: Piece::Tile, dealing: Dealing::Shared { chunk: 1 }, delivery: Delivery::InPlace }
+        Rule {
+            piece: Piece::Tile,
+            dealing: Dealing::Shared { chunk: 1 },
+            delivery: Delivery::InPlace,
+        }
     }
 
     fn prepare(&self, _: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
@@ -33,7 +39,8 @@ pub(super) static REFERENCE: Named = Named("reference", ThreadsStart::Never);
 static POOL: Named = Named("pool", ThreadsStart::Prepare);
 pub(super) static QUEUE: Named = Named("queue", ThreadsStart::Render);
 
-/// Answers the n-th call of a strategy by a function of its name and n, and moves the clock by the answer.
+/// Answers the n-th call of a strategy by a function of its name and n, and moves the clock by the
+/// answer.
 pub(super) struct Fake<F> {
     answer: F,
     pub(super) calls: Vec<&'static str>,
@@ -47,7 +54,8 @@ impl<F: FnMut(&'static str, usize) -> Result<Rendering, String>> Executor for Fa
         let name = entry.strategy.name();
         let result = (self.answer)(name, self.calls.iter().filter(|&&call| call == name).count());
         self.calls.push(name);
-        self.clock += Duration::from_nanos(result.as_ref().map_or(0, |rendering| rendering.sample.render_ns));
+        self.clock +=
+            Duration::from_nanos(result.as_ref().map_or(0, |rendering| rendering.sample.render_ns));
         result
     }
 
@@ -60,7 +68,9 @@ impl<F: FnMut(&'static str, usize) -> Result<Rendering, String>> Executor for Fa
     }
 }
 
-pub(super) fn fake<F: FnMut(&'static str, usize) -> Result<Rendering, String>>(answer: F) -> Fake<F> {
+pub(super) fn fake<F: FnMut(&'static str, usize) -> Result<Rendering, String>>(
+    answer: F,
+) -> Fake<F> {
     Fake { answer, calls: Vec::new(), clock: Duration::ZERO, interrupted_in: usize::MAX }
 }
 
@@ -82,7 +92,13 @@ pub(super) fn entry(strategy: &Named, threads: usize) -> Entry<'_> {
 }
 
 pub(super) fn protocol(min_rounds: usize, max_rounds: usize, budget_ns: u64) -> Protocol {
-    Protocol { min_rounds, max_rounds, budget: Duration::from_nanos(budget_ns), goal: None, seed: 3 }
+    Protocol {
+        min_rounds,
+        max_rounds,
+        budget: Duration::from_nanos(budget_ns),
+        goal: None,
+        seed: 3,
+    }
 }
 
 fn run<F: FnMut(&'static str, usize) -> Result<Rendering, String>>(
@@ -119,11 +135,17 @@ fn every_round_measures_every_row_once_in_an_order_that_varies() {
 fn rows_are_reference_control_and_contenders() {
     let entries = [entry(&REFERENCE, 4), entry(&POOL, 2)];
     let mut executor = fake(|_, _| right(1));
-    let comparison = protocol(1, 1, 0).run(&REFERENCE, &entries, &mut executor, |_| {}).expect("a picture");
-    let rows: Vec<_> = comparison.rows.iter().map(|row| (row.strategy, row.threads, row.role)).collect();
+    let comparison =
+        protocol(1, 1, 0).run(&REFERENCE, &entries, &mut executor, |_| {}).expect("a picture");
+    let rows: Vec<_> =
+        comparison.rows.iter().map(|row| (row.strategy, row.threads, row.role)).collect();
     assert_eq!(
         rows,
-        [("reference", 1, Role::Reference), ("reference", 1, Role::Control), ("pool", 2, Role::Contender)]
+        [
+            ("reference", 1, Role::Reference),
+            ("reference", 1, Role::Control),
+            ("pool", 2, Role::Contender)
+        ]
     );
 }
 
@@ -136,17 +158,20 @@ fn the_warm_up_is_verified_and_not_counted() {
         assert_eq!(row.samples, [Sample { prepare_ns: 7, render_ns: 100, ..Sample::default() }; 5]);
     }
 
-    let mut executor = fake(|name, call| if name == "pool" && call == 0 { wrong(1) } else { right(1) });
+    let mut executor =
+        fake(|name, call| if name == "pool" && call == 0 { wrong(1) } else { right(1) });
     let comparison = run(protocol(5, 5, u64::MAX), &mut executor);
     assert!(!comparison.rows[2].identical && comparison.rows[2].samples.is_empty());
 }
 
 #[test]
 fn a_speedup_is_the_median_of_the_ratios_within_a_round() {
-    // Rounds slow down by a factor that all rows share; the pool takes half of the reference's time.
+    // Rounds slow down by a factor that all rows share; the pool takes half of the reference's
+    // time.
     let mut executor = fake(|name, call| {
         // The reference is called three times before the first round, and twice in each.
-        let round = if name == "reference" { call.saturating_sub(3) / 2 } else { call.saturating_sub(1) };
+        let round =
+            if name == "reference" { call.saturating_sub(3) / 2 } else { call.saturating_sub(1) };
         let slow = 1000 << round;
         right(if name == "pool" { slow / 2 } else { slow })
     });
@@ -163,7 +188,8 @@ fn a_speedup_is_the_median_of_the_ratios_within_a_round() {
 #[test]
 fn a_wrong_picture_ends_its_row_and_no_other() {
     // Wrong in the third round: after the warm-up and two good ones.
-    let mut executor = fake(|name, call| if name == "pool" && call >= 3 { wrong(1) } else { right(4) });
+    let mut executor =
+        fake(|name, call| if name == "pool" && call >= 3 { wrong(1) } else { right(4) });
     let comparison = run(protocol(6, 6, u64::MAX), &mut executor);
     let pool = &comparison.rows[2];
     assert!(!pool.identical && !pool.holds() && !comparison.holds());
@@ -182,7 +208,11 @@ fn a_wrong_picture_ends_its_row_and_no_other() {
 fn both_pictures_of_a_fresh_process_are_verified() {
     let both = |render_ns, first| {
         right(render_ns).map(|Rendering { sample, digest, .. }| Rendering {
-            sample: Sample { one_shot_ns: Some(3 * render_ns), cpu_ns: Some(2 * render_ns), ..sample },
+            sample: Sample {
+                one_shot_ns: Some(3 * render_ns),
+                cpu_ns: Some(2 * render_ns),
+                ..sample
+            },
             digest,
             first_digest: Some(picture(first)),
         })
@@ -209,7 +239,11 @@ fn both_pictures_of_a_fresh_process_are_verified() {
 #[test]
 fn an_error_ends_its_row_and_no_other() {
     let mut executor =
-        fake(|name, call| if name == "queue" && call == 2 { Err("no threads".to_owned()) } else { right(4) });
+        fake(
+            |name, call| {
+                if name == "queue" && call == 2 { Err("no threads".to_owned()) } else { right(4) }
+            },
+        );
     let comparison = run(protocol(6, 6, u64::MAX), &mut executor);
     let queue = &comparison.rows[3];
     assert_eq!(queue.error.as_deref(), Some("no threads"));
@@ -217,16 +251,19 @@ fn an_error_ends_its_row_and_no_other() {
     assert_eq!((queue.samples.len(), queue.figures), (1, None));
     assert_eq!(comparison.rows[2].samples.len(), 6);
 
-    let mut executor = fake(|name, _| if name == "queue" { Err("no threads".to_owned()) } else { right(4) });
+    let mut executor =
+        fake(|name, _| if name == "queue" { Err("no threads".to_owned()) } else { right(4) });
     let comparison = run(protocol(1, 1, 0), &mut executor);
     assert!(!comparison.rows[3].identical, "without a picture nothing is identical");
 }
 
 #[test]
 fn without_a_right_reference_there_are_no_figures() {
-    let failures: [fn() -> Result<Rendering, String>; 2] = [|| wrong(1), || Err("no memory".to_owned())];
+    let failures: [fn() -> Result<Rendering, String>; 2] =
+        [|| wrong(1), || Err("no memory".to_owned())];
     for failure in failures {
-        // The picture, the warm-up of the reference and its control, two rounds of both, then the third.
+        // The picture, the warm-up of the reference and its control, two rounds of both, then the
+        // third.
         let mut executor =
             fake(|name, call| if name == "reference" && call >= 7 { failure() } else { right(4) });
         let comparison = run(protocol(6, 6, u64::MAX), &mut executor);
@@ -273,7 +310,9 @@ fn progress_only_grows_and_stays_below_one() {
     let mut fractions = Vec::new();
     let mut executor = fake(|_, _| right(10));
     let protocol = protocol(3, 10, 300);
-    protocol.run(&REFERENCE, &[], &mut executor, |p| fractions.push(p.fraction)).expect("a picture");
+    protocol
+        .run(&REFERENCE, &[], &mut executor, |p| fractions.push(p.fraction))
+        .expect("a picture");
     assert!(fractions.is_sorted(), "{fractions:?}");
     assert!(fractions.iter().all(|fraction| (0.0..1.0).contains(fraction)), "{fractions:?}");
     assert!(fractions.last() > Some(&0.8), "{fractions:?}");
@@ -289,7 +328,9 @@ impl<E: Executor> Executor for Counting<E> {
 
     fn warm_up(&mut self, entry: &Entry<'_>) -> Result<(Rendering, Option<Rays>), String> {
         let redundant = entry.threads.get() as u64;
-        self.0.render(entry).map(|rendering| (rendering, Some(Rays { primary: 2 * redundant, redundant })))
+        self.0
+            .render(entry)
+            .map(|rendering| (rendering, Some(Rays { primary: 2 * redundant, redundant })))
     }
 
     fn elapsed(&self) -> Duration {
@@ -305,8 +346,9 @@ fn rays_are_those_of_a_right_picture_in_the_warm_up() {
         _ => right(1),
     }));
     let entries = [entry(&POOL, 2), entry(&QUEUE, 4)];
-    let comparison =
-        protocol(3, 3, u64::MAX).run(&REFERENCE, &entries, &mut executor, |_| {}).expect("a picture");
+    let comparison = protocol(3, 3, u64::MAX)
+        .run(&REFERENCE, &entries, &mut executor, |_| {})
+        .expect("a picture");
     let rays: Vec<Option<Rays>> = comparison.rows.iter().map(|row| row.rays).collect();
     let counted = |redundant| Some(Rays { primary: 2 * redundant, redundant });
     assert_eq!(rays, [counted(1), counted(1), None, counted(4)]);
@@ -361,7 +403,8 @@ fn together_each_round_has_the_rows_of_all() {
         let mut round = round.to_vec();
         round.sort_unstable();
         let rows = ["pool", "reference", "reference"];
-        let expected: Calls = [0, 1].into_iter().flat_map(|number| rows.map(|name| (number, name))).collect();
+        let expected: Calls =
+            [0, 1].into_iter().flat_map(|number| rows.map(|name| (number, name))).collect();
         assert_eq!(round, expected);
     }
     let apart = |round: &[(usize, &str)]| round.is_sorted_by_key(|(number, _)| *number);
@@ -374,13 +417,17 @@ fn together_each_round_has_the_rows_of_all() {
 
 #[test]
 fn a_gain_is_the_median_of_the_ratios_within_a_round() {
-    // Rounds slow down by a factor that all share; the first's reference is called once more, for the picture.
+    // Rounds slow down by a factor that all share; the first's reference is called once more, for
+    // the picture.
     let slow = |name, call: usize, first| match name {
         "reference" => 1000 << (call.saturating_sub(first) / 2),
         _ => 1,
     };
-    let ([a, b], _) =
-        together(5, |name, call| right(slow(name, call, 3)), |name, call| right(3 * slow(name, call, 2)));
+    let ([a, b], _) = together(
+        5,
+        |name, call| right(slow(name, call, 3)),
+        |name, call| right(3 * slow(name, call, 2)),
+    );
     assert_eq!(a.gain_over(&b), Some(Interval { median: 3.0, low: 3.0, high: 3.0 }));
     let third = b.gain_over(&a).expect("both have figures");
     assert_eq!((third.low, third.high), (1.0 / 3.0, 1.0 / 3.0));
@@ -396,7 +443,9 @@ fn together_all_have_to_give_the_first_s_picture() {
 
 #[test]
 fn a_reference_that_fails_ends_its_own_comparison() {
-    let fails = |name, call| if name == "reference" && call >= 6 { Err("gone".to_owned()) } else { right(1) };
+    let fails = |name, call| {
+        if name == "reference" && call >= 6 { Err("gone".to_owned()) } else { right(1) }
+    };
     let ([a, b], _) = together(6, |_, _| right(1), fails);
     assert!(a.holds() && a.rows.iter().all(|row| row.samples.len() == 6 && row.figures.is_some()));
     // Its warm-up and two rounds, each with the reference and its control, then the third.

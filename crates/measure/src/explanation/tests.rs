@@ -2,7 +2,9 @@
 
 use super::*;
 use crate::timeline::{Lane, Piece};
-use rayweave_contract::{Area, Dealing, Delivery, Renderer, Rule, StrategyError, ThreadsStart, Tile};
+use rayweave_contract::{
+    Area, Dealing, Delivery, Renderer, Rule, StrategyError, ThreadsStart, Tile,
+};
 use std::time::Duration;
 
 const SIDE: NonZeroU32 = NonZeroU32::new(2).expect("not 0");
@@ -43,12 +45,18 @@ impl Strategy for Obedience {
     }
 
     fn rule(&self) -> Rule {
-        Rule { piece: rayweave_contract::Piece::Tile, dealing: Dealing::Equal, delivery: Delivery::InPlace }
+        Rule {
+            piece: rayweave_contract::Piece::Tile,
+            dealing: Dealing::Equal,
+            delivery: Delivery::InPlace,
+        }
     }
 
     fn prepare(&self, _: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
         match self {
-            Self::Refuses => Err(StrategyError::Unavailable { strategy: self.name(), reason: "not today" }),
+            Self::Refuses => {
+                Err(StrategyError::Unavailable { strategy: self.name(), reason: "not today" })
+            }
             _ => Ok(Box::new(*self)),
         }
     }
@@ -64,7 +72,8 @@ impl Renderer for Obedience {
 
 /// With two threads each, in three rounds.
 fn explain(strategies: &[&dyn Strategy]) -> Result<Explanation, ExplainError> {
-    let protocol = Protocol { min_rounds: 3, max_rounds: 3, budget: Duration::ZERO, goal: None, seed: 1 };
+    let protocol =
+        Protocol { min_rounds: 3, max_rounds: 3, budget: Duration::ZERO, goal: None, seed: 1 };
     let reference = &Obedience::AllOfThem;
     let experiment = Experiment { work: &Grey, size: (5, 4), tile: SIDE, reference, protocol };
     experiment.run(strategies, NonZeroUsize::new(2).expect("not 0"), |_| ())
@@ -78,7 +87,8 @@ fn each_strategy_has_a_row_and_its_pieces() {
     assert_eq!(explanation.rows.len(), 2);
     for row in &explanation.rows {
         assert_eq!((row.strategy, row.threads), ("all", 2));
-        let areas: Vec<_> = row.timeline.lanes[0].pieces.iter().map(|p| (p.area.x, p.area.y)).collect();
+        let areas: Vec<_> =
+            row.timeline.lanes[0].pieces.iter().map(|p| (p.area.x, p.area.y)).collect();
         assert_eq!(areas, [(0, 0), (2, 0), (4, 0), (0, 2), (2, 2), (4, 2)]);
         // Whatever the times: the second thread has none of the work.
         assert_eq!(row.timeline.lanes.len(), 1);
@@ -98,7 +108,8 @@ fn a_strategy_without_threads_has_one_whatever_it_is_given() {
 /// Catches figures of a strategy that draws something else, or nothing.
 #[test]
 fn what_is_wrong_is_not_explained() {
-    let wrong = explain(&[&Obedience::AllOfThem, &Obedience::AllButTheFirst]).expect_err("another picture");
+    let wrong =
+        explain(&[&Obedience::AllOfThem, &Obedience::AllButTheFirst]).expect_err("another picture");
     assert!(matches!(wrong, ExplainError::Different { strategy: "all-but-one" }), "{wrong}");
     let failed = explain(&[&Obedience::Refuses]).expect_err("no picture");
     assert_eq!(failed.to_string(), "refuses: unavailable here: not today");
@@ -107,7 +118,8 @@ fn what_is_wrong_is_not_explained() {
 /// Catches records of all pixels that are kept though nobody sees them, or with room for more.
 #[test]
 fn only_what_is_shown_is_kept() {
-    let protocol = Protocol { min_rounds: 1, max_rounds: 1, budget: Duration::ZERO, goal: None, seed: 1 };
+    let protocol =
+        Protocol { min_rounds: 1, max_rounds: 1, budget: Duration::ZERO, goal: None, seed: 1 };
     let reference = &Obedience::AllOfThem;
     let experiment = Experiment { work: &Grey, size: (5, 4), tile: SIDE, reference, protocol };
     let free = Cost { inside_ns: 0.0, outside_ns: 0.0 };

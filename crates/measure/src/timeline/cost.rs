@@ -32,10 +32,14 @@ impl Cost {
     pub fn here() -> Self {
         let lanes: Vec<Lane> = (0..BATCHES).filter_map(|_| batch()).collect();
         let per_piece = |of: fn(&Lane) -> u64| {
-            let means: Vec<f64> = lanes.iter().map(|lane| of(lane) as f64 / f64::from(PIECES)).collect();
+            let means: Vec<f64> =
+                lanes.iter().map(|lane| of(lane) as f64 / f64::from(PIECES)).collect();
             median(&means).unwrap_or(0.0)
         };
-        Self { inside_ns: per_piece(Lane::busy_ns), outside_ns: per_piece(|lane| lane.gaps_ns().sum()) }
+        Self {
+            inside_ns: per_piece(Lane::busy_ns),
+            outside_ns: per_piece(|lane| lane.gaps_ns().sum()),
+        }
     }
 }
 

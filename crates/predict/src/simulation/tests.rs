@@ -48,7 +48,8 @@ fn a_shared_counter_gives_to_who_is_free() {
 
 #[test]
 fn guided_takes_ever_fewer() {
-    // 8 left: thread 0 takes 4; 4 left: thread 1 takes 2, until 2, then one of 2, until 3, then the last, until 12.
+    // 8 left: thread 0 takes 4; 4 left: thread 1 takes 2, until 2, then one of 2, until 3, then the
+    // last, until 12.
     assert_eq!(free(Dealing::Guided, 2, &PIECES), Run { time: 12.0, computed: vec![4.0, 12.0] });
     let even = [1.0; 8];
     // 4 and 2 at 0; thread 1 takes one at 2 and one at 3.
@@ -57,7 +58,8 @@ fn guided_takes_ever_fewer() {
 
 #[test]
 fn the_idle_steal_half() {
-    // Shares of 4. At 4 thread 0 is idle; thread 1 then begins its fourth piece, so there is nothing left to steal.
+    // Shares of 4. At 4 thread 0 is idle; thread 1 then begins its fourth piece, so there is
+    // nothing left to steal.
     assert_eq!(free(Dealing::Stealing, 2, &PIECES).computed, [4.0, 12.0]);
     // All of the load is in the second share: thread 0 takes 2 of the 4 before thread 1 begins.
     let late = [0.0, 0.0, 0.0, 0.0, 5.0, 5.0, 5.0, 5.0];
@@ -68,11 +70,12 @@ fn the_idle_steal_half() {
 
 #[test]
 fn halves_are_stolen_whole_and_halved_again() {
-    // Two splits: parts 0..2, 2..4 and 4..8 lie in thread 0's queue; thread 1 steals the largest, halves it twice as
-    // well, and computes 4, then 5, then 6..8.
+    // Two splits: parts 0..2, 2..4 and 4..8 lie in thread 0's queue; thread 1 steals the largest,
+    // halves it twice as well, and computes 4, then 5, then 6..8.
     let even = [1.0; 8];
     assert_eq!(free(Dealing::Halving, 2, &even), Run { time: 4.0, computed: vec![4.0, 4.0] });
-    // Two pieces of 6 each are one part: it is not divided, though the other thread is idle from 2 on.
+    // Two pieces of 6 each are one part: it is not divided, though the other thread is idle from 2
+    // on.
     let pieces = [6.0, 6.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0];
     assert_eq!(free(Dealing::Halving, 2, &pieces), Run { time: 12.0, computed: vec![12.0, 2.0] });
     // Under stealing it would be.
@@ -92,13 +95,22 @@ fn threads_begin_one_after_the_other() {
 #[test]
 fn a_lock_is_had_by_one_at_a_time() {
     let locked = rule(Dealing::Equal, Delivery::Locked);
-    let overheads = |hold, handover| Overheads { deliver: Access { hold, handover }, ..Overheads::default() };
-    // Both come at 1, 2 ...: thread 1 always waits for thread 0, and is one hold later from then on.
-    assert_eq!(simulate(locked, 2, &[1.0; 4], &overheads(0.25, 0.0)).time, 1.0 + 0.25 + 0.25 + 1.0 + 0.25);
+    let overheads =
+        |hold, handover| Overheads { deliver: Access { hold, handover }, ..Overheads::default() };
+    // Both come at 1, 2 ...: thread 1 always waits for thread 0, and is one hold later from then
+    // on.
+    assert_eq!(
+        simulate(locked, 2, &[1.0; 4], &overheads(0.25, 0.0)).time,
+        1.0 + 0.25 + 0.25 + 1.0 + 0.25
+    );
     // Where the lock is all there is, threads do not help: 8 pieces one after the other.
     let pieces = [0.0; 8];
     assert_eq!(simulate(locked, 4, &pieces, &overheads(1.0, 0.0)).time, 8.0);
-    assert_eq!(simulate(locked, 1, &pieces, &overheads(1.0, 3.0)).time, 8.0, "nobody to hand it over");
+    assert_eq!(
+        simulate(locked, 1, &pieces, &overheads(1.0, 3.0)).time,
+        8.0,
+        "nobody to hand it over"
+    );
     // Each of the accesses but the first is a handover: threads take turns.
     assert_eq!(simulate(locked, 4, &pieces, &overheads(1.0, 3.0)).time, 8.0 + 7.0 * 3.0);
 }
@@ -115,7 +127,8 @@ fn a_counter_is_had_by_one_at_a_time() {
 #[test]
 fn who_sends_does_not_wait() {
     let sent = rule(Dealing::Equal, Delivery::Sent);
-    let overheads = Overheads { deliver: Access { hold: 3.0, handover: 0.0 }, ..Overheads::default() };
+    let overheads =
+        Overheads { deliver: Access { hold: 3.0, handover: 0.0 }, ..Overheads::default() };
     // The owner receives at 1, 4, 7 and 10: the threads have long ended.
     assert_eq!(simulate(sent, 2, &[1.0; 4], &overheads).time, 1.0 + 4.0 * 3.0);
     // Few and large: only the last receipt is added.
@@ -136,7 +149,8 @@ fn no_pieces_take_the_start_alone() {
 proptest! {
     #![proptest_config(ProptestConfig { rng_seed: proptest::test_runner::RngSeed::Fixed(1), ..ProptestConfig::default() })]
 
-    /// Catches pieces that are lost or computed twice, and speed out of nothing. Whole numbers add up exactly.
+    /// Catches pieces that are lost or computed twice, and speed out of nothing. Whole numbers add
+    /// up exactly.
     #[test]
     fn work_is_conserved_and_n_threads_are_at_most_n_times_as_fast(
         pieces in prop::collection::vec(0_u32..1000, 1..200),
@@ -156,8 +170,8 @@ proptest! {
         }
     }
 
-    /// A list scheduler is never worse than this (Graham, "Bounds on multiprocessing timing anomalies", 1969). So more
-    /// threads may be slower, but by no more than it allows.
+    /// A list scheduler is never worse than this (Graham, "Bounds on multiprocessing timing
+    /// anomalies", 1969). So more threads may be slower, but by no more than it allows.
     #[test]
     fn who_is_free_takes_the_next_within_grahams_bound(
         pieces in prop::collection::vec(0_u32..1000, 1..200),

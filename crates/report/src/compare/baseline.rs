@@ -43,7 +43,8 @@ pub(super) struct Change<'a> {
     row: &'a Row,
     /// Its time now over its time then.
     time: Option<Interval>,
-    /// The same of its time over the reference's in the same run: what changed the whole machine cancels.
+    /// The same of its time over the reference's in the same run: what changed the whole machine
+    /// cancels.
     relative: Option<Interval>,
 }
 
@@ -73,8 +74,8 @@ impl Baseline {
         Ok(baseline)
     }
 
-    /// Finds out whether times of `subject` can be compared with these, before any is taken. The scene may lie in
-    /// another folder.
+    /// Finds out whether times of `subject` can be compared with these, before any is taken. The
+    /// scene may lie in another folder.
     ///
     /// # Errors
     ///
@@ -100,7 +101,8 @@ impl Baseline {
     /// Of each row but the control.
     pub(super) fn changes<'a>(&self, comparison: &'a Comparison) -> Vec<Change<'a>> {
         let reference = comparison.rows.first().map(Row::render_ns).unwrap_or_default();
-        let earlier_reference = self.results.first().map(|result| &result.samples_ns[..]).unwrap_or_default();
+        let earlier_reference =
+            self.results.first().map(|result| &result.samples_ns[..]).unwrap_or_default();
         let rows = comparison.rows.iter().filter(|row| row.role != Role::Control);
         rows.map(|row| {
             let now = row.figures.map(|_| row.render_ns()).unwrap_or_default();
@@ -187,12 +189,20 @@ const HEADER: [&str; 5] = [
 
 /// The table below the table.
 pub(super) fn text(baseline: &Baseline, report: &Report<'_>) -> String {
-    let cell = |interval: Option<Interval>| interval.map_or_else(|| "-".to_owned(), style::precise_interval);
+    let cell = |interval: Option<Interval>| {
+        interval.map_or_else(|| "-".to_owned(), style::precise_interval)
+    };
     let changes = baseline.changes(report.comparison);
     let rows = changes.iter().map(|change| {
         let Change { row, time, relative } = change;
         let [time, relative] = [*time, *relative].map(cell);
-        [row.strategy.to_owned(), row.threads.to_string(), time, relative, change.verdict().to_owned()]
+        [
+            row.strategy.to_owned(),
+            row.threads.to_string(),
+            time,
+            relative,
+            change.verdict().to_owned(),
+        ]
     });
     let mut lines = vec![
         "changes since the baseline".to_owned(),
@@ -211,7 +221,9 @@ pub(super) fn text(baseline: &Baseline, report: &Report<'_>) -> String {
         lines.push(format!("The baseline {doubt}: believe no verdict, measure a new baseline."));
     }
     if baseline.digest != report.comparison.digest.to_string() {
-        lines.push("The baseline drew ANOTHER PICTURE: that may be all of the difference.".to_owned());
+        lines.push(
+            "The baseline drew ANOTHER PICTURE: that may be all of the difference.".to_owned(),
+        );
     }
     lines.join("\n")
 }
@@ -222,7 +234,8 @@ mod tests {
     use super::*;
     use rayweave_core::{Formulas, Sampling, Search};
 
-    /// The made-up comparison, its reference and control `reference` and its pool `pool` times as slow.
+    /// The made-up comparison, its reference and control `reference` and its pool `pool` times as
+    /// slow.
     fn slowed(reference: f64, pool: f64) -> Comparison {
         let mut comparison = comparison();
         let noise = [0.99, 1.0, 1.01, 1.0, 0.995, 1.005, 1.0, 1.0];
@@ -235,7 +248,8 @@ mod tests {
     }
 
     fn baseline() -> Baseline {
-        Baseline::parse(&with_report(&slowed(1.0, 1.0), |report| report.json())).expect("a comparison")
+        Baseline::parse(&with_report(&slowed(1.0, 1.0), |report| report.json()))
+            .expect("a comparison")
     }
 
     fn verdicts(now: &Comparison) -> Vec<(&'static str, &'static str)> {
@@ -244,7 +258,8 @@ mod tests {
         changes.iter().map(|change| (change.row.strategy, change.verdict())).collect()
     }
 
-    /// Catches a machine that is slower taken for a strategy that is, and a ratio that is upside down.
+    /// Catches a machine that is slower taken for a strategy that is, and a ratio that is upside
+    /// down.
     #[test]
     fn what_is_slower_and_what_is_the_machine() {
         let rest = [("queue", "not in both"), ("many, \"too\" many", "not in both")];
@@ -261,16 +276,22 @@ mod tests {
     #[test]
     fn changes_for_people_and_programs() {
         let (now, baseline) = (slowed(1.0, 1.1), baseline());
-        let text = with_report(&now, |report| Report { baseline: Some(&baseline), ..*report }.table());
+        let text =
+            with_report(&now, |report| Report { baseline: Some(&baseline), ..*report }.table());
         let line = text.lines().find(|line| line.starts_with("pool") && line.ends_with("slower"));
         assert!(line.is_some_and(|line| line.contains("1.100 [1.0")), "{text}");
         assert!(!text.contains("ANOTHER PICTURE"), "{text}");
-        let json = with_report(&now, |report| Report { baseline: Some(&baseline), ..*report }.json());
+        let json =
+            with_report(&now, |report| Report { baseline: Some(&baseline), ..*report }.json());
         let value: Value = serde_json::from_str(&json).expect("JSON");
         let pool = &value["changes"][1];
         assert_eq!((&pool["strategy"], &pool["verdict"]), (&"pool".into(), &"slower".into()));
         assert!((pool["time"]["median"].as_f64().expect("a number") - 1.1).abs() < 1e-6, "{pool}");
-        assert_eq!(value["changes"].as_array().map(Vec::len), Some(4), "the control has no place here");
+        assert_eq!(
+            value["changes"].as_array().map(Vec::len),
+            Some(4),
+            "the control has no place here"
+        );
 
         let other = Baseline { digest: "of something else".to_owned(), ..baseline };
         let text = with_report(&now, |report| Report { baseline: Some(&other), ..*report }.table());
@@ -283,7 +304,8 @@ mod tests {
         use rayweave_measure::Noise;
         use std::time::Duration;
 
-        // What is said of the run then and of the run now, each a comparison and whether it was disturbed.
+        // What is said of the run then and of the run now, each a comparison and whether it was
+        // disturbed.
         let told = |then: (&Comparison, bool), now: (&Comparison, bool)| {
             let with_noise = |(comparison, disturbed): (&Comparison, bool),
                               show: &dyn Fn(&Report<'_>) -> String| {
@@ -293,8 +315,10 @@ mod tests {
                     show(&Report { noise: &noise, ..*report })
                 })
             };
-            let then = Baseline::parse(&with_noise(then, &|report| report.json())).expect("a comparison");
-            let text = with_noise(now, &|report| Report { baseline: Some(&then), ..*report }.table());
+            let then =
+                Baseline::parse(&with_noise(then, &|report| report.json())).expect("a comparison");
+            let text =
+                with_noise(now, &|report| Report { baseline: Some(&then), ..*report }.table());
             text.lines()
                 .filter(|line| line.contains("believe no verdict"))
                 .map(str::to_owned)
@@ -337,9 +361,15 @@ mod tests {
             (|s| s.width = 501, "width is 500 there and 501 here"),
             (|s| s.height = 1, "height is 400 there and 1 here"),
             (|s| s.antialiasing = 3, "antialiasing is 2 there and 3 here"),
-            (|s| s.sampling = Sampling::Importance, "sampling is \"lattice\" there and \"importance\" here"),
+            (
+                |s| s.sampling = Sampling::Importance,
+                "sampling is \"lattice\" there and \"importance\" here",
+            ),
             (|s| s.adaptive = true, "adaptive is false there and true here"),
-            (|s| s.formulas = Formulas::Textbook, "formulas is \"robust\" there and \"textbook\" here"),
+            (
+                |s| s.formulas = Formulas::Textbook,
+                "formulas is \"robust\" there and \"textbook\" here",
+            ),
             (|s| s.precision = "f64".to_owned(), "precision is \"f32\" there and \"f64\" here"),
             (|s| s.lanes = 1, "lanes is 8 there and 1 here"),
             (|s| s.share_samples = false, "share_samples is true there and false here"),
@@ -351,7 +381,10 @@ mod tests {
             assert_eq!(check(change), Err(format!("{difference}: {help}")));
         }
         let both = check(|s| (s.lanes, s.tile) = (4, 7)).expect_err("another");
-        assert_eq!(both, format!("lanes is 8 there and 4 here, tile is 32 there and 7 here: {help}"));
+        assert_eq!(
+            both,
+            format!("lanes is 8 there and 4 here, tile is 32 there and 7 here: {help}")
+        );
     }
 
     #[test]

@@ -130,7 +130,8 @@ pub(super) fn both(report: &BothReport<'_>) -> String {
 
 fn object<'a>(report: &Report<'a>) -> Object<'a> {
     let Report { subject, comparison, machine, noise, baseline } = *report;
-    let changes = |baseline: &Baseline| baseline.changes(comparison).iter().map(Change::object).collect();
+    let changes =
+        |baseline: &Baseline| baseline.changes(comparison).iter().map(Change::object).collect();
     Object {
         schema: SCHEMA,
         settings: subject.into(),

@@ -12,12 +12,13 @@ const HEADER: &str = "| strategy | threads | median ms | speed-up [95 % interval
 pub(super) fn text(report: &Report<'_>) -> String {
     let rows: String = report.comparison.rows.iter().map(line).collect();
     let facts = machine::text(report.machine).replace('\n', "; ");
-    let disturbed = if report.noise.is_disturbing() { " **Disturbed by other programs.**" } else { "" };
+    let disturbed =
+        if report.noise.is_disturbing() { " **Disturbed by other programs.**" } else { "" };
     format!("{}\n\n{HEADER}{rows}\n{facts}.{disturbed}\n", super::table::heading(report))
 }
 
-/// Of several scenes, by name: a table of `rows`, each with a strategy, threads and a cell a scene, and sentences. Ends
-/// with a newline.
+/// Of several scenes, by name: a table of `rows`, each with a strategy, threads and a cell a scene,
+/// and sentences. Ends with a newline.
 pub(super) fn summary(scenes: &[String], rows: &[Vec<String>], sentences: &[String]) -> String {
     let line = |cells: &[String]| {
         let cells: Vec<String> = cells.iter().map(|cell| escaped(cell)).collect();
@@ -44,7 +45,8 @@ fn line(row: &Row) -> String {
         let reason = if row.error.is_some() { "failed" } else { "wrong picture" };
         return format!("| {name} | {threads} | {reason} | | | |\n");
     };
-    let one_shot = figures.one_shot.map(|one_shot| milliseconds(one_shot.median_ns)).unwrap_or_default();
+    let one_shot =
+        figures.one_shot.map(|one_shot| milliseconds(one_shot.median_ns)).unwrap_or_default();
     format!(
         "| {name} | {threads} | {} | {} | {:.0} % | {one_shot} |\n",
         milliseconds(figures.median_ns),

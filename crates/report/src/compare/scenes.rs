@@ -25,8 +25,8 @@ const EVEN: f64 = 1.1;
 const FREE_NS: f64 = 1e7;
 
 impl ScenesReport<'_> {
-    /// For people: a row a strategy, a column a scene, and a sentence on each scene. Plain text without a newline at
-    /// the end.
+    /// For people: a row a strategy, a column a scene, and a sentence on each scene. Plain text
+    /// without a newline at the end.
     #[must_use]
     pub fn table(&self) -> String {
         let header = ["strategy".to_owned(), "threads".to_owned()];
@@ -59,12 +59,16 @@ impl ScenesReport<'_> {
             format!("INTERRUPTED: {} after {} rounds.", name(report), report.comparison.rounds)
         }));
         if !self.not_measured.is_empty() {
-            lines.push(format!("INTERRUPTED before it was measured: {}.", self.not_measured.join(", ")));
+            lines.push(format!(
+                "INTERRUPTED before it was measured: {}.",
+                self.not_measured.join(", ")
+            ));
         }
         lines
     }
 
-    /// For programs: `schema`, 1, `comparisons`, a list of [`Report::json`]'s objects, and `not_measured`.
+    /// For programs: `schema`, 1, `comparisons`, a list of [`Report::json`]'s objects, and
+    /// `not_measured`.
     #[must_use]
     pub fn json(&self) -> String {
         json::several(self.reports, self.not_measured)
@@ -76,21 +80,26 @@ impl ScenesReport<'_> {
         csv::several(self.reports)
     }
 
-    /// What [`ScenesReport::table`] says, then the tables of [`Report::markdown`], one after the other.
+    /// What [`ScenesReport::table`] says, then the tables of [`Report::markdown`], one after the
+    /// other.
     #[must_use]
     pub fn markdown(&self) -> String {
         let names: Vec<String> = self.reports.iter().map(name).collect();
         let rows = self.rows(|best| format!("**{best}**"));
-        let tables: String = self.reports.iter().map(|report| format!("\n{}", report.markdown())).collect();
+        let tables: String =
+            self.reports.iter().map(|report| format!("\n{}", report.markdown())).collect();
         markdown::summary(&names, &rows, &self.notes()) + &tables
     }
 
     /// A row's name, its threads and its speed-up in each scene, the highest of a scene `marked`.
     fn rows(&self, marked: impl Fn(String) -> String) -> Vec<Vec<String>> {
-        let rows = self.reports.first().map(|report| &report.comparison.rows[..]).unwrap_or_default();
+        let rows =
+            self.reports.first().map(|report| &report.comparison.rows[..]).unwrap_or_default();
         let cell = |report: &Report<'_>, number: usize| {
             let row = &report.comparison.rows[number];
-            let Some(speedup) = speedup(row).map(style::interval) else { return "failed".to_owned() };
+            let Some(speedup) = speedup(row).map(style::interval) else {
+                return "failed".to_owned();
+            };
             let best = winner(report).is_some_and(|best| std::ptr::eq(best, row));
             if best { marked(speedup) } else { speedup }
         };
@@ -130,7 +139,8 @@ fn why(report: &Report<'_>, load: &Load) -> String {
     };
     let threads = report.comparison.rows.iter().map(|row| row.threads).max().unwrap_or(1);
     let others = || report.comparison.rows.iter().filter(|row| row.role != Role::Control);
-    let as_good = others().filter(|row| speedup(row).is_some_and(|other| other.high >= won.low)).count() - 1;
+    let as_good =
+        others().filter(|row| speedup(row).is_some_and(|other| other.high >= won.low)).count() - 1;
     let certain = others().filter(|row| speedup(row).is_some_and(|other| other.low > 1.0));
     let certain: Vec<&str> = certain.map(|row| row.strategy).collect();
     let strategy = winner.strategy;
@@ -158,11 +168,17 @@ fn why(report: &Report<'_>, load: &Load) -> String {
     let dearest = load.dearest_tile();
     if dearest * threads as f64 > 1.0 {
         let (share, most) = (dearest * 100.0, 1.0 / dearest);
-        parts.push(format!("one tile has {share:.0} % of the cost, so whole tiles allow at most {most:.2}"));
+        parts.push(format!(
+            "one tile has {share:.0} % of the cost, so whole tiles allow at most {most:.2}"
+        ));
     }
-    let whole = report.comparison.rows.first().and_then(|row| row.figures).map(|figures| figures.median_ns);
+    let whole =
+        report.comparison.rows.first().and_then(|row| row.figures).map(|figures| figures.median_ns);
     if let Some(ns) = whole.filter(|&ns| ns < FREE_NS) {
-        parts.push(format!("all pixels take {:.2} ms, so starting threads and dealing out count", ns / 1e6));
+        parts.push(format!(
+            "all pixels take {:.2} ms, so starting threads and dealing out count",
+            ns / 1e6
+        ));
     }
     parts.join("; ") + "."
 }
@@ -193,7 +209,8 @@ mod tests {
         let (mut even, mut corner) = (comparison(), comparison());
         for comparison in [&mut even, &mut corner] {
             // Of the largest number of threads, which the bound is for.
-            comparison.rows[2].threads = comparison.rows.iter().map(|row| row.threads).max().expect("rows");
+            comparison.rows[2].threads =
+                comparison.rows.iter().map(|row| row.threads).max().expect("rows");
             let rule = &mut comparison.rows[2].rule;
             (rule.dealing, rule.piece) = (Dealing::Equal, Piece::Tile);
         }
@@ -216,7 +233,11 @@ mod tests {
         let uneven: Vec<u64> = std::iter::once(27_000).chain(costs.iter().copied()).collect();
         let (even, uneven) = (load(&costs), load(&uneven));
         let not_measured = ["later.toml".to_owned()];
-        read(&ScenesReport { reports: &reports, loads: &[&even, &uneven], not_measured: &not_measured })
+        read(&ScenesReport {
+            reports: &reports,
+            loads: &[&even, &uneven],
+            not_measured: &not_measured,
+        })
     }
 
     #[test]
@@ -227,16 +248,21 @@ mod tests {
         };
         assert!(line("strategy").contains("even") && line("strategy").ends_with("corner"));
         assert!(
-            line("pool").contains("* 1.95 [1.91, 2.01]") && line("pool").ends_with("  0.90 [0.85, 0.95]")
+            line("pool").contains("* 1.95 [1.91, 2.01]")
+                && line("pool").ends_with("  0.90 [0.85, 0.95]")
         );
-        assert!(line("sequential  ").ends_with("* 1.00 [0.96, 1.06]") && line("queue").contains("failed"));
+        assert!(
+            line("sequential  ").ends_with("* 1.00 [0.96, 1.06]")
+                && line("queue").contains("failed")
+        );
         assert_eq!(
             line("even:"),
             "even: pool (equal shares) is first, with 0 more within the intervals; the cost is even, equal shares \
              of tiles differ by 0 %."
         );
         assert_eq!(line("INTERRUPTED"), "INTERRUPTED before it was measured: later.toml.");
-        // 9000 threads and a tile more than that: the first range is the dear tile alone, 3/4 of all.
+        // 9000 threads and a tile more than that: the first range is the dear tile alone, 3/4 of
+        // all.
         assert_eq!(
             line("corner:"),
             "corner: no strategy pays, sequential is first; \
@@ -261,16 +287,23 @@ mod tests {
             baseline: None,
         };
         let told = why(&report, &load(&[1, 1]));
-        assert!(told.contains(": no strategy is faster than alone for certain, pool comes first;"), "{told}");
+        assert!(
+            told.contains(": no strategy is faster than alone for certain, pool comes first;"),
+            "{told}"
+        );
 
         // Another is, though its median is lower.
         let mut comparison = comparison.clone();
-        let queue = comparison.rows[2]
-            .figures
-            .map(|figures| Figures { speedup: Interval { median: 1.1, low: 1.05, high: 1.2 }, ..figures });
+        let queue = comparison.rows[2].figures.map(|figures| Figures {
+            speedup: Interval { median: 1.1, low: 1.05, high: 1.2 },
+            ..figures
+        });
         comparison.rows[3].figures = queue;
         let told = why(&Report { comparison: &comparison, ..report }, &load(&[1, 1]));
-        assert!(told.contains(": pool comes first; faster than alone for certain: queue;"), "{told}");
+        assert!(
+            told.contains(": pool comes first; faster than alone for certain: queue;"),
+            "{told}"
+        );
     }
 
     #[test]
@@ -287,20 +320,24 @@ mod tests {
     #[test]
     fn markdown_begins_with_who_wins_where() {
         let markdown = with_scenes(|scenes| scenes.markdown());
-        let (text, lines) = (with_scenes(|scenes| scenes.table()), markdown.lines().collect::<Vec<_>>());
-        let head =
-            "speed-up over the reference of the same scene [95 % interval]; the highest of a scene in bold";
+        let (text, lines) =
+            (with_scenes(|scenes| scenes.table()), markdown.lines().collect::<Vec<_>>());
+        let head = "speed-up over the reference of the same scene [95 % interval]; the highest of a scene in bold";
         assert_eq!(lines[..2], [head, ""]);
         assert_eq!(lines[2..4], ["| strategy | threads | even | corner |", "|---|--:|--:|--:|"]);
         assert_eq!(lines[4], "| sequential | 1 | 1.00 [0.96, 1.06] | **1.00 [0.96, 1.06]** |");
         assert_eq!(lines[6], "| pool | 9000 | **1.95 [1.91, 2.01]** | 0.90 [0.85, 0.95] |");
-        let sentences: Vec<&str> = lines.iter().filter_map(|line| line.strip_prefix("- ")).collect();
+        let sentences: Vec<&str> =
+            lines.iter().filter_map(|line| line.strip_prefix("- ")).collect();
         assert!(
             sentences.len() == 3 && sentences.iter().all(|sentence| text.contains(sentence)),
             "{markdown}"
         );
         assert_eq!(markdown.matches("| pool | 9000 | 1026 |").count(), 2, "{markdown}");
-        assert!(markdown.contains("| sequential (control) | 1 | 2010 | 1.00 [0.96, 1.06] | 100 % | 2512 |"));
+        assert!(
+            markdown
+                .contains("| sequential (control) | 1 | 2010 | 1.00 [0.96, 1.06] | 100 % | 2512 |")
+        );
         assert!(markdown.contains("| queue | 2 | wrong picture | | | |"), "{markdown}");
         assert!(markdown.contains("| many, \"too\" many | 9000 | failed | | | |"), "{markdown}");
     }

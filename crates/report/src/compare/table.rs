@@ -78,7 +78,9 @@ fn measured(report: &Report<'_>) -> Vec<String> {
 pub(super) fn heading(Report { subject, comparison, .. }: &Report<'_>) -> String {
     let rays = match (subject.antialiasing, subject.sampling) {
         (0, _) => "one ray a pixel".to_owned(),
-        (density, Sampling::Lattice) if subject.adaptive => format!("antialiasing {density} (adaptive)"),
+        (density, Sampling::Lattice) if subject.adaptive => {
+            format!("antialiasing {density} (adaptive)")
+        }
         (density, Sampling::Lattice) => format!("antialiasing {density}"),
         (density, sampling) => format!("antialiasing {density} by {sampling}"),
     };
@@ -173,10 +175,15 @@ pub(crate) fn complaint(row: &Row) -> Option<String> {
     let plural = if row.threads == 1 { "" } else { "s" };
     let who = format!("{}, {} thread{plural}", row.strategy, row.threads);
     match (&row.error, row.digest) {
-        (Some(error), _) => Some(format!("{who}: failed after {} samples: {error}", row.samples.len())),
+        (Some(error), _) => {
+            Some(format!("{who}: failed after {} samples: {error}", row.samples.len()))
+        }
         (None, Some(digest)) if !row.identical => {
             let samples = row.samples.len();
-            Some(format!("{who}: a wrong picture, digest {}, after {samples} right ones", digest.short()))
+            Some(format!(
+                "{who}: a wrong picture, digest {}, after {samples} right ones",
+                digest.short()
+            ))
         }
         _ => None,
     }
@@ -221,7 +228,10 @@ fn control(comparison: &Comparison) -> Option<String> {
     } else {
         String::new()
     };
-    Some(format!("control: {reference} over itself is {}; {verdict}{note}", style::precise_interval(control)))
+    Some(format!(
+        "control: {reference} over itself is {}; {verdict}{note}",
+        style::precise_interval(control)
+    ))
 }
 
 /// Whether the rows are as precise as was wished for.
@@ -255,7 +265,8 @@ mod tests {
     fn a_control_says_what_is_to_be_believed() {
         let told = |median, low, high| {
             let mut comparison = comparison();
-            comparison.rows[1].figures.as_mut().expect("figures").speedup = Interval { median, low, high };
+            comparison.rows[1].figures.as_mut().expect("figures").speedup =
+                Interval { median, low, high };
             control(&comparison).expect("a control")
         };
         assert_eq!(

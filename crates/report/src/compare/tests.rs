@@ -1,5 +1,6 @@
 //! The three forms of one made-up comparison: a reference, its control, a pool, a queue that drew a
-//! wrong picture, and one whose threads could not be started. And of two that were measured together.
+//! wrong picture, and one whose threads could not be started. And of two that were measured
+//! together.
 
 use super::*;
 use rayweave_contract::{Dealing, Delivery, Digest, Image, Piece, Rule};
@@ -14,23 +15,39 @@ pub(super) fn digest(brightness: f32) -> Digest {
 /// Of 500 x 400 pixels: 4.38 each, of which 4 would have been enough.
 const RAYS: Rays = Rays { primary: 876_000, redundant: 76_000 };
 
-/// The first rendering takes a quarter more, preparing included; two threads compute nearly all of the time.
+/// The first rendering takes a quarter more, preparing included; two threads compute nearly all of
+/// the time.
 pub(super) fn sample(ns: u64) -> Sample {
-    Sample { prepare_ns: 84_600, render_ns: ns, one_shot_ns: Some(ns / 4 * 5), cpu_ns: Some(ns / 10 * 19) }
+    Sample {
+        prepare_ns: 84_600,
+        render_ns: ns,
+        one_shot_ns: Some(ns / 4 * 5),
+        cpu_ns: Some(ns / 10 * 19),
+    }
 }
 
 fn around(median: f64) -> Interval {
     Interval { median, low: median - 0.04, high: median + 0.06 }
 }
 
-fn row(strategy: &'static str, threads: usize, role: Role, threads_start: ThreadsStart, ns: u64) -> Row {
+fn row(
+    strategy: &'static str,
+    threads: usize,
+    role: Role,
+    threads_start: ThreadsStart,
+    ns: u64,
+) -> Row {
     let speedup = 2e9 / ns as f64;
     Row {
         strategy,
         threads,
         role,
         threads_start,
-        rule: Rule { piece: Piece::Tile, dealing: Dealing::Shared { chunk: 1 }, delivery: Delivery::InPlace },
+        rule: Rule {
+            piece: Piece::Tile,
+            dealing: Dealing::Shared { chunk: 1 },
+            delivery: Delivery::InPlace,
+        },
         identical: true,
         digest: Some(digest(1.0)),
         error: None,
@@ -39,7 +56,10 @@ fn row(strategy: &'static str, threads: usize, role: Role, threads_start: Thread
         figures: Some(Figures {
             median_ns: ns as f64,
             prepare_ns: 84_600.0,
-            one_shot: Some(OneShot { median_ns: 1.25 * ns as f64, speedup: around(1.6e9 / ns as f64) }),
+            one_shot: Some(OneShot {
+                median_ns: 1.25 * ns as f64,
+                speedup: around(1.6e9 / ns as f64),
+            }),
             cpu_ns: Some(1.9 * ns as f64),
             speedup: around(speedup),
             efficiency: speedup / threads as f64,
@@ -115,8 +135,17 @@ pub(super) fn subject() -> Subject {
     }
 }
 
-pub(super) fn with_report(comparison: &Comparison, read: impl FnOnce(&Report<'_>) -> String) -> String {
-    read(&Report { subject: &subject(), comparison, machine: &machine(), noise: &noise(), baseline: None })
+pub(super) fn with_report(
+    comparison: &Comparison,
+    read: impl FnOnce(&Report<'_>) -> String,
+) -> String {
+    read(&Report {
+        subject: &subject(),
+        comparison,
+        machine: &machine(),
+        noise: &noise(),
+        baseline: None,
+    })
 }
 
 /// The same without samples shared: the reference takes three times as long, and the pool fails.
@@ -216,7 +245,8 @@ fn a_control_that_differs_from_itself_is_told() {
 #[test]
 fn what_is_to_be_doubted_is_told() {
     let line = |noise: &Noise| crate::noise::text(noise);
-    let disturbed = Noise { foreign: Some(Duration::from_millis(4950)), throttled: Some(3), ..noise() };
+    let disturbed =
+        Noise { foreign: Some(Duration::from_millis(4950)), throttled: Some(3), ..noise() };
     let told = "noise: others had 25.0 % of the machine; 0.1 s of it other machines on the same host; stopped 3 times \
                 by the group's limit; 34 involuntary switches; 2400 to 3600 MHz.\nDISTURBED: measure again when the \
                 machine is quiet.";
@@ -226,13 +256,19 @@ fn what_is_to_be_doubted_is_told() {
     let goal = |goal| with_report(&Comparison { goal, ..comparison() }, |report| report.table());
     assert!(!goal(None).contains("goal:"));
     assert!(goal(Some(0.06)).contains("goal: each speed-up is known to +-6.000 % or better."));
-    // The half of 0.1 is 5 % of the reference's speed-up, a little more of its control's, and 2.6 % of the pool's.
-    assert!(goal(Some(0.04)).contains("goal: 2 speed-ups are not known to +-4.000 %: time was up."));
+    // The half of 0.1 is 5 % of the reference's speed-up, a little more of its control's, and 2.6 %
+    // of the pool's.
+    assert!(
+        goal(Some(0.04)).contains("goal: 2 speed-ups are not known to +-4.000 %: time was up.")
+    );
 
     let stopped = Comparison { goal: Some(0.04), interrupted: true, ..comparison() };
     let text = with_report(&stopped, |report| report.table());
     assert!(text.contains("; interrupted after 2 interleaved rounds, digest "), "{text}");
-    assert!(text.contains("goal: 2 speed-ups are not known to +-4.000 %: it was interrupted."), "{text}");
+    assert!(
+        text.contains("goal: 2 speed-ups are not known to +-4.000 %: it was interrupted."),
+        "{text}"
+    );
     let json = with_report(&stopped, |report| report.json());
     assert!(json.contains("\"interrupted\": true"), "{json}");
 }
@@ -261,7 +297,10 @@ fn json_has_the_keys_that_stay() {
     assert_eq!((&value["lanes"], &value["share_samples"]), (&8.into(), &true.into()));
     assert_eq!(value["search"], "auto");
     assert_eq!((&pool["primary_rays"], &pool["redundant_rays"]), (&876_000.into(), &76_000.into()));
-    assert!(value["results"][4]["primary_rays"].is_null() && value["results"][4]["redundant_rays"].is_null());
+    assert!(
+        value["results"][4]["primary_rays"].is_null()
+            && value["results"][4]["redundant_rays"].is_null()
+    );
     assert_eq!((value.get("unshared"), value.get("sharing_speedup")), (None, None));
     let one_shot = &pool["one_shot"];
     assert_eq!(
@@ -299,7 +338,8 @@ fn csv_has_a_line_for_each_row() {
     let mut reader = ::csv::Reader::from_reader(text.as_bytes());
     let headers = reader.headers().expect("headers").clone();
     let column = |name| headers.iter().position(|header| header == name).expect(name);
-    let records: Vec<::csv::StringRecord> = reader.records().map(|r| r.expect("a record")).collect();
+    let records: Vec<::csv::StringRecord> =
+        reader.records().map(|r| r.expect("a record")).collect();
     assert_eq!(records.len(), 5);
     assert_eq!(&records[2][column("median_ns")], "1025641026");
     assert_eq!(&records[2][column("serial_fraction")], "0.0256");

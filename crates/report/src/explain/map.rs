@@ -19,12 +19,18 @@ const MAX_CELLS: u64 = 20_000;
 const STEPS: u32 = 64;
 
 /// From little to much: every fourth part of "viridis" by Smith and van der Walt, 2015.
-const VIRIDIS: [[f64; 3]; 5] =
-    [[68.0, 1.0, 84.0], [59.0, 82.0, 139.0], [33.0, 145.0, 140.0], [94.0, 201.0, 98.0], [253.0, 231.0, 37.0]];
+const VIRIDIS: [[f64; 3]; 5] = [
+    [68.0, 1.0, 84.0],
+    [59.0, 82.0, 139.0],
+    [33.0, 145.0, 140.0],
+    [94.0, 201.0, 98.0],
+    [253.0, 231.0, 37.0],
+];
 
 type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
 
-/// Of the picture's size: each pixel in the colour of the thread that computed it, black if none did.
+/// Of the picture's size: each pixel in the colour of the thread that computed it, black if none
+/// did.
 pub(super) fn owners(timeline: &Timeline, mut picture: Image) -> Image {
     let (width, height) = (picture.width(), picture.height());
     for (index, lane) in timeline.lanes.iter().enumerate() {
@@ -52,7 +58,8 @@ fn cells(timeline: &Timeline, (width, height): (u32, u32)) -> Vec<Cell> {
     let pieces = || timeline.lanes.iter().flat_map(|lane| &lane.pieces);
     let pixels = |area: Area| f64::from(area.width) * f64::from(area.height);
     if timeline.pieces() as u64 <= MAX_CELLS {
-        let cell = |piece: &Piece| Cell { area: piece.area, ns: piece.ns() as f64 / pixels(piece.area) };
+        let cell =
+            |piece: &Piece| Cell { area: piece.area, ns: piece.ns() as f64 / pixels(piece.area) };
         return pieces().map(cell).collect();
     }
     let cut = |side: u32| u64::from(width.div_ceil(side)) * u64::from(height.div_ceil(side));
@@ -64,7 +71,8 @@ fn cells(timeline: &Timeline, (width, height): (u32, u32)) -> Vec<Cell> {
         let ns = piece.ns() as f64 / pixels(piece.area);
         for y in y..y + height {
             for x in x..x + width {
-                if let Some(sum) = sums.get_mut((y / side) as usize * columns + (x / side) as usize) {
+                if let Some(sum) = sums.get_mut((y / side) as usize * columns + (x / side) as usize)
+                {
                     *sum += ns;
                 }
             }
@@ -154,7 +162,8 @@ fn viridis(share: f64) -> RGBColor {
     let place = share.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f64;
     let below = (place as usize).min(VIRIDIS.len() - 2);
     let part = place - below as f64;
-    let channel = |i: usize| (VIRIDIS[below][i] * (1.0 - part) + VIRIDIS[below + 1][i] * part).round() as u8;
+    let channel =
+        |i: usize| (VIRIDIS[below][i] * (1.0 - part) + VIRIDIS[below + 1][i] * part).round() as u8;
     RGBColor(channel(0), channel(1), channel(2))
 }
 
@@ -176,7 +185,8 @@ mod tests {
     fn each_pixel_shows_its_thread() {
         let timeline = timeline([vec![piece((0, 0, 2, 1), 1)], vec![piece((2, 1, 5, 5), 1)]]);
         let picture = owners(&timeline, Image::new(3, 2).expect("a picture"));
-        let [first, second] = [0, 1].map(|thread| [color(thread).0, color(thread).1, color(thread).2]);
+        let [first, second] =
+            [0, 1].map(|thread| [color(thread).0, color(thread).1, color(thread).2]);
         let expected = [first, first, [0; 3], [0; 3], [0; 3], second];
         assert_eq!(picture.to_rgb8(), expected.concat());
     }
@@ -188,8 +198,9 @@ mod tests {
         assert_eq!(cells(&few, (3, 3)), [cell(0, 0, 2, 3, 2.0), cell(2, 0, 1, 1, 5.0)]);
 
         // 201 x 101 pixels: squares of two, the last column and row cut off. A pixel takes its x.
-        let pixels: Vec<Piece> =
-            (0..101).flat_map(|y| (0..201).map(move |x| piece((x, y, 1, 1), u64::from(x)))).collect();
+        let pixels: Vec<Piece> = (0..101)
+            .flat_map(|y| (0..201).map(move |x| piece((x, y, 1, 1), u64::from(x))))
+            .collect();
         let cells = cells(&timeline([pixels, Vec::new()]), (201, 101));
         assert_eq!(cells.len(), 101 * 51);
         assert_eq!(cells[..2], [cell(0, 0, 2, 2, 0.5), cell(2, 0, 2, 2, 2.5)]);
@@ -205,8 +216,14 @@ mod tests {
     #[test]
     fn the_scale_meets_its_colours() {
         let colors = [-1.0, 0.0, 0.5, 0.625, 1.0, 2.0].map(viridis);
-        let expected =
-            [(68, 1, 84), (68, 1, 84), (33, 145, 140), (64, 173, 119), (253, 231, 37), (253, 231, 37)];
+        let expected = [
+            (68, 1, 84),
+            (68, 1, 84),
+            (33, 145, 140),
+            (64, 173, 119),
+            (253, 231, 37),
+            (253, 231, 37),
+        ];
         assert_eq!(colors, expected.map(|(red, green, blue)| RGBColor(red, green, blue)));
     }
 }

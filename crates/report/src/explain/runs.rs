@@ -58,7 +58,8 @@ mod tests {
         Piece { area: Area { x, y, width, height }, begin_ns, end_ns }
     }
 
-    /// Catches runs over a row's end, over a long gap, backwards, and of pieces that are not pixels.
+    /// Catches runs over a row's end, over a long gap, backwards, and of pieces that are not
+    /// pixels.
     #[test]
     fn pixels_that_follow_each_other_are_one_run() {
         let pieces = vec![

@@ -44,7 +44,12 @@ fn causes(explanation: &Explanation, row: &Row, unit: Unit) -> String {
     let cells = |label: &str, ns: f64, sign: f64| {
         let share = ns / all;
         let speedup = sign * share * row.threads as f64;
-        [label.to_owned(), unit.text(ns), format!("{:.1} %", 100.0 * share), format!("{speedup:+.2}")]
+        [
+            label.to_owned(),
+            unit.text(ns),
+            format!("{:.1} %", 100.0 * share),
+            format!("{speedup:+.2}"),
+        ]
     };
     let useful = cells("useful work", explanation.reference_ns, 1.0);
     let lost = Cause::ALL.map(|cause| cells(name(cause), row.losses.to(cause), -1.0));
@@ -61,11 +66,19 @@ fn sum(row: &Row, unit: Unit) -> String {
     } else {
         format!("{:.0} %", 100.0 * explained / lost)
     };
-    format!("adds up to {} of {} {} lost ({share})", unit.text(explained), unit.text(lost), unit.name)
+    format!(
+        "adds up to {} of {} {} lost ({share})",
+        unit.text(explained),
+        unit.text(lost),
+        unit.name
+    )
 }
 
 fn recording(row: &Row) -> String {
-    format!("recorded renderings take {} times as long as plain ones", style::precise_interval(row.recorded))
+    format!(
+        "recorded renderings take {} times as long as plain ones",
+        style::precise_interval(row.recorded)
+    )
 }
 
 /// What each thread does.
@@ -83,7 +96,8 @@ fn threads(report: &Report<'_>, row: &Row, unit: Unit) -> String {
         "long\ngaps".to_owned(),
         timed("of"),
     ];
-    let count = |count: Option<u64>| count.map_or_else(|| "-".to_owned(), |count| count.to_string());
+    let count =
+        |count: Option<u64>| count.map_or_else(|| "-".to_owned(), |count| count.to_string());
     let cells = |(index, thread): (usize, Thread<'_>)| {
         [
             label(thread.name, index),
@@ -99,7 +113,11 @@ fn threads(report: &Report<'_>, row: &Row, unit: Unit) -> String {
         ]
     };
     let without = row.threads.saturating_sub(row.timeline.lanes.len());
-    let table = style::table(header, Thread::all(row, report.rays).into_iter().enumerate().map(cells), 1..=9);
+    let table = style::table(
+        header,
+        Thread::all(row, report.rays).into_iter().enumerate().map(cells),
+        1..=9,
+    );
     match without {
         0 => table,
         1 => table + "\n1 more thread got no piece",

@@ -1,4 +1,5 @@
-//! Text, JSON, trace and pictures of one made-up explanation: a queue of tiles, and pixels by two of three threads.
+//! Text, JSON, trace and pictures of one made-up explanation: a queue of tiles, and pixels by two
+//! of three threads.
 
 use super::*;
 use crate::compare::tests::noise;
@@ -13,7 +14,8 @@ const MS: f64 = 1e6;
 
 fn account(threads: usize, [busy, between, waiting, serial]: [f64; 4]) -> Account {
     let wall_ns = (busy + between + waiting + serial) * MS / threads as f64;
-    let [busy_ns, between_ns, waiting_ns, serial_ns] = [busy, between, waiting, serial].map(|ms| ms * MS);
+    let [busy_ns, between_ns, waiting_ns, serial_ns] =
+        [busy, between, waiting, serial].map(|ms| ms * MS);
     Account { threads, wall_ns, busy_ns, between_ns, waiting_ns, serial_ns }
 }
 
@@ -22,7 +24,8 @@ fn piece((x, y, width, height): (u32, u32, u32, u32), begin_ns: u64, end_ns: u64
 }
 
 fn row(strategy: &'static str, threads: usize, together: Account, lanes: Vec<Lane>) -> Row {
-    let (sequential, alone) = (account(1, [98.0, 1.0, 0.0, 1.0]), account(1, [100.0, 1.5, 0.0, 1.0]));
+    let (sequential, alone) =
+        (account(1, [98.0, 1.0, 0.0, 1.0]), account(1, [100.0, 1.5, 0.0, 1.0]));
     Row {
         strategy,
         threads,
@@ -81,7 +84,8 @@ fn with_report<T>(check: impl FnOnce(&Report<'_>) -> T) -> T {
 #[test]
 fn text_puts_a_figure_to_each_cause_and_adds_them_up() {
     let text = with_report(|report| report.text());
-    let lines: Vec<Vec<&str>> = text.lines().map(|line| line.split_whitespace().collect()).collect();
+    let lines: Vec<Vec<&str>> =
+        text.lines().map(|line| line.split_whitespace().collect()).collect();
     let has = |expected: &str| {
         let expected: Vec<&str> = expected.split_whitespace().collect();
         assert!(lines.contains(&expected), "{expected:?} in\n{text}");
@@ -110,7 +114,8 @@ fn text_puts_a_figure_to_each_cause_and_adds_them_up() {
     );
 }
 
-/// Catches a culprit that is named by chance: what is not explained is more than it takes, above or below.
+/// Catches a culprit that is named by chance: what is not explained is more than it takes, above or
+/// below.
 #[test]
 fn what_chance_outweighs_is_no_verdict() {
     let (machine, noise) = (Machine::here(), noise());
@@ -119,9 +124,16 @@ fn what_chance_outweighs_is_no_verdict() {
         // Its causes sum up to 18.8 ms, and the largest takes 10.
         explanation.rows[0].lost_ns = lost_ms * MS;
         let (size, tile, machine, noise) = ((8, 4), 4, &machine, &noise);
-        let text =
-            Report { scene: "room", size, tile, explanation: &explanation, rays: &|_| None, machine, noise }
-                .text();
+        let text = Report {
+            scene: "room",
+            size,
+            tile,
+            explanation: &explanation,
+            rays: &|_| None,
+            machine,
+            noise,
+        }
+        .text();
         assert_eq!(text.contains("\nMost is lost to imbalance (8 %): "), verdict, "{text}");
         assert_eq!(text.contains("\nNo verdict: "), !verdict, "{text}");
     }
@@ -173,15 +185,24 @@ fn little_lost_is_said_to_be_little() {
     };
     let text = report.text();
     assert!(text.starts_with("queue on 1 thread: "), "{text}");
-    assert!(text.contains("adds up to 0.20 of 0.50 ms lost (less than 1 % of the thread-time)\n"), "{text}");
+    assert!(
+        text.contains("adds up to 0.20 of 0.50 ms lost (less than 1 % of the thread-time)\n"),
+        "{text}"
+    );
     assert!(text.contains("\nNo cause takes 1 % of the thread-time.\n"), "{text}");
 }
 
 #[test]
 fn json_has_every_cause_and_thread() {
     let value: Value = serde_json::from_str(&with_report(|report| report.json())).expect("JSON");
-    assert_eq!((&value["schema"], &value["scene"], &value["rounds"]), (&1.into(), &"room".into(), &7.into()));
-    assert_eq!((&value["noise"]["wall_s"], &value["noise"]["disturbed"]), (&10.0.into(), &false.into()));
+    assert_eq!(
+        (&value["schema"], &value["scene"], &value["rounds"]),
+        (&1.into(), &"room".into(), &7.into())
+    );
+    assert_eq!(
+        (&value["noise"]["wall_s"], &value["noise"]["disturbed"]),
+        (&10.0.into(), &false.into())
+    );
     let result = &value["results"][0];
     assert_eq!((&result["strategy"], &result["threads"]), (&"queue".into(), &2.into()));
     assert_eq!(result["speedup"], 100.0 / 60.0);
@@ -189,14 +210,23 @@ fn json_has_every_cause_and_thread() {
     let losses = causes.map(|cause| result["losses_ns"][cause].as_f64().expect("a number").round());
     assert_eq!(losses, [2.0, 1.0, 0.5, 0.5, 10.0, 4.8].map(|ms| ms * MS));
     let thread = &result["threads_recorded"][1];
-    let keys = ["begin_ns", "end_ns", "busy_ns", "between_ns", "idle_ns", "pieces", "pixels", "primary_rays"];
+    let keys = [
+        "begin_ns",
+        "end_ns",
+        "busy_ns",
+        "between_ns",
+        "idle_ns",
+        "pieces",
+        "pixels",
+        "primary_rays",
+    ];
     let figures = keys.map(|key| thread[key].as_u64().expect("a number"));
     assert_eq!(figures, [1500, 6000, 2500, 2000, 5500, 2, 16, 18]);
     assert_eq!((&thread["long_gaps"], &thread["long_gaps_ns"]), (&1.into(), &2000.into()));
 }
 
-/// The rules of the format: each event has its phase, process, thread and time; a slice has a duration; slices of one
-/// thread do not overlap; processes and threads have names.
+/// The rules of the format: each event has its phase, process, thread and time; a slice has a
+/// duration; slices of one thread do not overlap; processes and threads have names.
 #[test]
 fn the_trace_keeps_the_rules_of_its_format() {
     let text = with_report(|report| report.trace());
@@ -225,7 +255,10 @@ fn the_trace_keeps_the_rules_of_its_format() {
     for (thread, slices) in &mut slices {
         slices.sort_by(|a, b| a.0.total_cmp(&b.0));
         // Microseconds: a billionth of one is rounding.
-        assert!(slices.windows(2).all(|pair| pair[0].1 <= pair[1].0 + 1e-9), "{thread:?}: {slices:?}");
+        assert!(
+            slices.windows(2).all(|pair| pair[0].1 <= pair[1].0 + 1e-9),
+            "{thread:?}: {slices:?}"
+        );
         assert!(names[thread].iter().any(|(kind, _)| *kind == "thread_name"), "{thread:?}");
     }
     assert_eq!(names[&(1, 0)], [("process_name", "queue"), ("thread_name", "rendering")]);
@@ -246,7 +279,9 @@ fn the_time_line_has_a_bar_for_each_thread_and_a_name() {
     let [queue, pixels] = with_report(|report| {
         [0, 1].map(|place| report.timeline(&report.explanation.rows[place]).expect("drawn"))
     });
-    for part in ["queue 0: computes 79.9 % of the time", "queue 1: computes 25.0 % of the time", "ms since"] {
+    for part in
+        ["queue 0: computes 79.9 % of the time", "queue 1: computes 25.0 % of the time", "ms since"]
+    {
         assert!(queue.contains(part), "{part}: {queue}");
     }
     // The ground, two threads' idle bars and four pieces.

@@ -28,17 +28,24 @@ pub(super) fn svg(row: &Row) -> Result<String, String> {
 fn draw(row: &Row, text: &mut String) -> Drawn {
     let timeline = &row.timeline;
     let lanes = timeline.lanes.len().max(row.threads);
-    let height = u32::try_from(lanes).unwrap_or(u32::MAX).saturating_mul(LANE).saturating_add(FRAME);
+    let height =
+        u32::try_from(lanes).unwrap_or(u32::MAX).saturating_mul(LANE).saturating_add(FRAME);
     let root = SVGBackend::with_string(text, (WIDTH, height)).into_drawing_area();
     root.fill(&WHITE)?;
     let wall = milliseconds(timeline.wall_ns);
-    let title = format!("{}, {} threads: each thread's pieces; grey: none", row.strategy, row.threads);
+    let title =
+        format!("{}, {} threads: each thread's pieces; grey: none", row.strategy, row.threads);
     let mut chart = ChartBuilder::on(&root)
         .caption(title, ("sans-serif", 20))
         .margin(12)
         .x_label_area_size(44)
         .build_cartesian_2d(0.0..wall, 0.0..lanes as f64)?;
-    chart.configure_mesh().disable_y_mesh().y_labels(0).x_desc("ms since the rendering began").draw()?;
+    chart
+        .configure_mesh()
+        .disable_y_mesh()
+        .y_labels(0)
+        .x_desc("ms since the rendering began")
+        .draw()?;
     for index in 0..lanes {
         // The first thread is on top; below its name is its bar.
         let bottom = (lanes - 1 - index) as f64;
@@ -51,7 +58,10 @@ fn draw(row: &Row, text: &mut String) -> Drawn {
         let bars = runs::of(lane, row.long_gap_ns).into_iter().enumerate().map(|(place, run)| {
             // Neighbours differ, so that pieces can be told apart.
             let color = if place % 2 == 0 { color(index) } else { shaded(color(index)) };
-            Rectangle::new(bar(milliseconds(run.begin_ns), milliseconds(run.end_ns)), color.filled())
+            Rectangle::new(
+                bar(milliseconds(run.begin_ns), milliseconds(run.end_ns)),
+                color.filled(),
+            )
         });
         chart.draw_series(bars)?;
         let name = label(lane.name.as_deref(), index);

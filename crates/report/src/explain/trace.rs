@@ -1,7 +1,7 @@
 //! The time lines in the trace event format, which Perfetto and Chrome's tracing page show.
 //!
-//! A strategy is a process and a thread is a thread; what the rendering takes as a whole is thread 0. Times are
-//! microseconds since the rendering began. Source: Google, "Trace Event Format".
+//! A strategy is a process and a thread is a thread; what the rendering takes as a whole is thread
+//! 0. Times are microseconds since the rendering began. Source: Google, "Trace Event Format".
 
 use super::{Report, label, runs};
 use rayweave_measure::explanation::Row;

@@ -83,7 +83,8 @@ struct Costs {
 
 pub(super) fn json(report: &Report<'_>) -> String {
     let forecast = report.forecast;
-    let slowdown = |&(threads, factor): &(usize, _)| Slowdown { threads, factor: Ratio::from(factor) };
+    let slowdown =
+        |&(threads, factor): &(usize, _)| Slowdown { threads, factor: Ratio::from(factor) };
     let items = forecast
         .curves
         .iter()

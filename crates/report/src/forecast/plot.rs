@@ -25,15 +25,19 @@ fn draw(report: &Report<'_>, text: &mut String) -> Drawn {
     let root = SVGBackend::with_string(text, SIZE).into_drawing_area();
     root.fill(&WHITE)?;
     let Report { scene, width, height, .. } = report;
-    let title =
-        format!("{scene}, {width} x {height} pixels: speed-up, predicted (lines) and measured (circles)");
+    let title = format!(
+        "{scene}, {width} x {height} pixels: speed-up, predicted (lines) and measured (circles)"
+    );
     let (threads, speedups) = axes(curves);
     let mut chart = ChartBuilder::on(&root)
         .caption(title, ("sans-serif", 20))
         .margin(12)
         .x_label_area_size(44)
         .y_label_area_size(60)
-        .build_cartesian_2d(threads.clone().log_scale().base(2.0), speedups.log_scale().base(2.0))?;
+        .build_cartesian_2d(
+            threads.clone().log_scale().base(2.0),
+            speedups.log_scale().base(2.0),
+        )?;
     chart
         .configure_mesh()
         .x_desc("threads")
@@ -56,8 +60,10 @@ fn draw(report: &Report<'_>, text: &mut String) -> Drawn {
             .draw_series(LineSeries::new(predicted, color.stroke_width(2)))?
             .label(curve.strategy)
             .legend(move |(x, y)| PathElement::new([(x, y), (x + 16, y)], color.stroke_width(2)));
-        let measured =
-            curve.points.iter().filter_map(|point| Some((point.threads as f64, point.measured?.median)));
+        let measured = curve
+            .points
+            .iter()
+            .filter_map(|point| Some((point.threads as f64, point.measured?.median)));
         chart.draw_series(measured.map(|at| Circle::new(at, MARKER, color.stroke_width(2))))?;
     }
     chart

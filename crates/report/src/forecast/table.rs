@@ -22,18 +22,24 @@ pub(super) fn text(report: &Report<'_>) -> String {
 
 fn heading(report: &Report<'_>) -> String {
     let Report { scene, width, height, tile, .. } = report;
-    format!("{scene}, {width} x {height} pixels, tiles of {tile}: predicted speed-up by number of threads")
+    format!(
+        "{scene}, {width} x {height} pixels, tiles of {tile}: predicted speed-up by number of threads"
+    )
 }
 
 fn predictions(curves: &[Curve]) -> String {
     let threads = curves.first().map(|curve| &curve.points[..]).unwrap_or_default();
     let numbers = threads.iter().map(|point| point.threads.to_string());
     let laws = ["Amdahl:\nserial", "USL:\nsigma", "\nkappa", "\npeak"].map(str::to_owned);
-    let header: Vec<String> = std::iter::once("strategy".to_owned()).chain(numbers).chain(laws).collect();
+    let header: Vec<String> =
+        std::iter::once("strategy".to_owned()).chain(numbers).chain(laws).collect();
     let last = header.len() - 1;
     let rows = curves.iter().map(|curve| {
         let points = curve.points.iter().map(|point| style::significant(point.predicted));
-        std::iter::once(curve.strategy.to_owned()).chain(points).chain(laws_of(curve)).collect::<Vec<_>>()
+        std::iter::once(curve.strategy.to_owned())
+            .chain(points)
+            .chain(laws_of(curve))
+            .collect::<Vec<_>>()
     });
     style::table(header, rows, 1..=last)
 }
@@ -44,7 +50,11 @@ fn laws_of(curve: &Curve) -> [String; 4] {
     [
         figure(curve.amdahl.map(|law| format!("{:.4} ±{:.0} %", law.serial, 100.0 * law.error))),
         figure(curve.usl.map(|law| format!("{:.4}", law.serial))),
-        figure(curve.usl.map(|law| format!("{} ±{:.0} %", crosstalk(law.crosstalk), 100.0 * law.error))),
+        figure(
+            curve
+                .usl
+                .map(|law| format!("{} ±{:.0} %", crosstalk(law.crosstalk), 100.0 * law.error)),
+        ),
         figure(peak),
     ]
 }
@@ -62,8 +72,10 @@ fn laws_legend() -> &'static str {
 
 /// Predictions beside what was measured; none where no number of threads asked for is here.
 fn checks(curves: &[Curve]) -> Option<String> {
-    let rows: Vec<[String; 5]> =
-        curves.iter().flat_map(|curve| curve.points.iter().filter_map(|point| check(curve, point))).collect();
+    let rows: Vec<[String; 5]> = curves
+        .iter()
+        .flat_map(|curve| curve.points.iter().filter_map(|point| check(curve, point)))
+        .collect();
     if rows.is_empty() {
         return None;
     }
@@ -96,8 +108,10 @@ fn basis(report: &Report<'_>) -> String {
         let slowdown = style::precise_interval(slowdown);
         format!("{threads} threads that share nothing take {slowdown} times as long as one, each: {used}.")
     });
-    let reference =
-        forecast.comparison.reference_ns().map(|ns| format!("the reference takes {:.2} ms.", ns / 1e6));
+    let reference = forecast
+        .comparison
+        .reference_ns()
+        .map(|ns| format!("the reference takes {:.2} ms.", ns / 1e6));
     let rounds = format!(
         "measured: {} interleaved rounds, every picture verified; predicted from pieces timed one by one on one thread, in \
          the same rounds, and from the overheads of threads.",

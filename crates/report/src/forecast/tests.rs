@@ -61,7 +61,8 @@ fn forecast() -> Forecast {
         amdahl,
         usl,
     };
-    let points = vec![point(1, 0.99, Some(1.0)), point(2, 1.8, Some(2.0)), point(1024, 123.4, None)];
+    let points =
+        vec![point(1, 0.99, Some(1.0)), point(2, 1.8, Some(2.0)), point(1024, 123.4, None)];
     let few = vec![point(1, 0.5, None), point(2, 0.9, None), point(1024, 0.25, None)];
     Forecast {
         curves: vec![curve("queue", points, amdahl, usl), curve("lock", few, None, None)],
@@ -123,7 +124,10 @@ fn json_has_every_point_and_law() {
     assert!(value["laws"][1]["amdahl"].is_null());
     assert_eq!(value["slowdowns"][0]["factor"]["high"], 1.1);
     assert_eq!(value["reference_median_ns"], 50e6);
-    assert_eq!((&value["noise"]["wall_s"], &value["noise"]["disturbed"]), (&10.0.into(), &false.into()));
+    assert_eq!(
+        (&value["noise"]["wall_s"], &value["noise"]["disturbed"]),
+        (&10.0.into(), &false.into())
+    );
 }
 
 #[test]

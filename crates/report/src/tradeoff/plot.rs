@@ -14,7 +14,8 @@ const SIZE: (u32, u32) = (1400, 1100);
 const LEAST_ERROR: f64 = 1e-6;
 
 /// A colour a depth: all bounces, one, none.
-const COLORS: [RGBColor; 3] = [RGBColor(0, 90, 181), RGBColor(220, 110, 0), RGBColor(120, 120, 120)];
+const COLORS: [RGBColor; 3] =
+    [RGBColor(0, 90, 181), RGBColor(220, 110, 0), RGBColor(120, 120, 120)];
 
 /// The radius of a marker, in pixels.
 const MARKER: i32 = 3;
@@ -34,7 +35,10 @@ pub(super) fn svg(report: &Report<'_>) -> Result<String, String> {
 fn draw(report: &Report<'_>, text: &mut String) -> Drawn {
     let root = SVGBackend::with_string(text, SIZE).into_drawing_area();
     root.fill(&WHITE)?;
-    let title = format!("{}, {} x {} pixels: time against error", report.scene, report.width, report.height);
+    let title = format!(
+        "{}, {} x {} pixels: time against error",
+        report.scene, report.width, report.height
+    );
     let root = root.titled(&title, ("sans-serif", 24))?;
     let axes = axes(&report.study.rows);
     for (panel, arithmetic) in root.split_evenly((2, 2)).iter().zip(ARITHMETICS) {
@@ -80,12 +84,15 @@ fn draw_panel(
     for (depth, color) in depths.into_iter().zip(COLORS) {
         let series = |sampling, adaptive| {
             let wanted = move |setting: &Setting| {
-                (setting.max_reflections, setting.sampling, setting.adaptive) == (depth, sampling, adaptive)
+                (setting.max_reflections, setting.sampling, setting.adaptive)
+                    == (depth, sampling, adaptive)
             };
             rows().filter(move |row| wanted(&row.setting)).map(place)
         };
         chart
-            .draw_series(series(Sampling::Lattice, false).map(|at| Circle::new(at, MARKER, color.filled())))?
+            .draw_series(
+                series(Sampling::Lattice, false).map(|at| Circle::new(at, MARKER, color.filled())),
+            )?
             .label(format!("lattice, bounces: {depth}"))
             .legend(move |(x, y)| Circle::new((x + 8, y), MARKER, color.filled()));
         chart
@@ -121,7 +128,8 @@ fn draw_panel(
 fn label<'a>(row: &Row, color: &'a RGBColor) -> Text<'a, Point, String> {
     let above = row.setting.sampling == Sampling::Lattice && !row.setting.adaptive;
     let place_of_text = if above { VPos::Bottom } else { VPos::Top };
-    let style = TextStyle::from(("sans-serif", 11)).color(color).pos(Pos::new(HPos::Center, place_of_text));
+    let style =
+        TextStyle::from(("sans-serif", 11)).color(color).pos(Pos::new(HPos::Center, place_of_text));
     let (time, error) = place(row);
     let gap = if above { 1.06 } else { 1.0 / 1.06 };
     Text::new(row.setting.rays_per_pixel().to_string(), (time, error * gap), style)

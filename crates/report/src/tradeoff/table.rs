@@ -38,7 +38,8 @@ pub(super) fn text(report: &Report<'_>) -> String {
         heading(report),
         style::table(HEADER, rows.into_iter().map(cells), NUMBERS),
         notes(report),
-        "The Pareto front: the most exact setting for its time. All others are dominated.".to_owned(),
+        "The Pareto front: the most exact setting for its time. All others are dominated."
+            .to_owned(),
         style::table(HEADER, front.into_iter().map(cells), NUMBERS),
         choice(report),
         style::table(COST_HEADER, study.costs.iter().map(cost_cells), 1..=3),
@@ -77,7 +78,12 @@ fn cells(row: &Row) -> [String; HEADER.len()] {
 }
 
 fn cost_cells(cost: &Cost) -> [String; COST_HEADER.len()] {
-    [cost.part.to_owned(), interval(cost.robust_f32), interval(cost.robust_f64), interval(cost.f64_robust)]
+    [
+        cost.part.to_owned(),
+        interval(cost.robust_f32),
+        interval(cost.robust_f64),
+        interval(cost.f64_robust),
+    ]
 }
 
 fn notes(report: &Report<'_>) -> String {
@@ -129,7 +135,11 @@ fn choice(report: &Report<'_>) -> String {
     // What is fast here may be wrong elsewhere: the formulas that hold are named in any case.
     let robust = study.fastest_robust(target).filter(|robust| robust.setting != row.setting);
     let robust = robust.map_or_else(String::new, |robust| {
-        format!("\nOf robust formulas: {}, {} times as fast.", robust.setting, interval(robust.speedup))
+        format!(
+            "\nOf robust formulas: {}, {} times as fast.",
+            robust.setting,
+            interval(robust.speedup)
+        )
     });
     format!(
         "For {target} dB choose {}: {} dB in {} ms, {} times as fast as the report's own setting,\n\

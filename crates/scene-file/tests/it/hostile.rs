@@ -14,7 +14,10 @@ fn refusal(bytes: impl AsRef<[u8]>) -> SceneFileError {
 
 fn assert_readable(error: &SceneFileError) {
     let line = error.to_string();
-    assert!(!line.chars().any(|c| c.is_control() || "\u{2028}\u{2029}\u{202e}".contains(c)), "{line:?}");
+    assert!(
+        !line.chars().any(|c| c.is_control() || "\u{2028}\u{2029}\u{202e}".contains(c)),
+        "{line:?}"
+    );
     assert!(line.chars().count() < 1000, "{line}");
     assert!(line.starts_with(&error.file) && line.ends_with(&error.message), "{line}");
 }
@@ -28,8 +31,9 @@ fn an_error_has_all_its_pieces() {
     assert_eq!(error.position, Some(Position { line, column: 10 }));
     assert_eq!(error.key.as_deref(), Some("sphere[2].radius"));
     assert_eq!(error.message, "expected a finite number above 0, found -1");
-    let shown =
-        format!("scenes/room.toml:{line}:10: sphere[2].radius: expected a finite number above 0, found -1");
+    let shown = format!(
+        "scenes/room.toml:{line}:10: sphere[2].radius: expected a finite number above 0, found -1"
+    );
     assert_eq!(error.to_string(), shown);
 }
 
@@ -56,16 +60,18 @@ fn depth_is_no_way_to_the_end_of_the_stack() {
     // As deep as TOML is read: still a value of the wrong type like any other.
     let error = refusal(format!("sphere = {}{}\n[camera]", "[".repeat(80), "]".repeat(80)));
     assert_eq!(error.key.as_deref(), Some("camera.position"));
-    let error = refusal(REPORT_SCENE.replace("0.9\n", &format!("{}{}\n", "[".repeat(80), "]".repeat(80))));
+    let error =
+        refusal(REPORT_SCENE.replace("0.9\n", &format!("{}{}\n", "[".repeat(80), "]".repeat(80))));
     assert_eq!(error.key.as_deref(), Some("sphere[0].radius"));
 }
 
 #[test]
 fn length_is_no_way_to_a_long_message() {
     const LENGTH: usize = 1_000_000;
-    for piece in
-        ["[", "]", "{", "\"", "'", "\"\"\"", "a", "a.", "a=1\n", "[a]\n", "[[a]]\n", "#", "\\", "-", "é"]
-    {
+    for piece in [
+        "[", "]", "{", "\"", "'", "\"\"\"", "a", "a.", "a=1\n", "[a]\n", "[[a]]\n", "#", "\\", "-",
+        "é",
+    ] {
         refusal(piece.repeat(LENGTH / piece.len()));
         refusal(format!("a = {}", piece.repeat(LENGTH / piece.len())));
         refusal(format!("a = \"{}", piece.repeat(LENGTH / piece.len())));
@@ -78,8 +84,9 @@ fn length_is_no_way_to_a_long_message() {
     assert_eq!(material.key.as_deref(), Some("sphere[0].material"));
     let key = refusal(REPORT_SCENE.replace("look_at", &long));
     assert_eq!(key.position.map(|position| position.column), Some(1));
-    let digits =
-        refusal(REPORT_SCENE.replace("antialiasing = 2", &format!("antialiasing = {}", "9".repeat(LENGTH))));
+    let digits = refusal(
+        REPORT_SCENE.replace("antialiasing = 2", &format!("antialiasing = {}", "9".repeat(LENGTH))),
+    );
     assert!(digits.message.starts_with("expected an integer in 0..=32, found 999"), "{digits}");
     refusal(REPORT_SCENE.replace("material.red", &format!("material.{long}")));
 }

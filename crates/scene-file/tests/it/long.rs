@@ -17,7 +17,8 @@ fn long() -> String {
 fn entries() -> String {
     let mut text = String::new();
     for i in 0..ENTRIES {
-        let kind = ["[[light]]", "[[sphere]]\nradius = 1\nmaterial = 'late'\n", "[[plane]] # odd"][i % 3];
+        let kind =
+            ["[[light]]", "[[sphere]]\nradius = 1\nmaterial = 'late'\n", "[[plane]] # odd"][i % 3];
         let place = ["position", "center", "material = 'late'\nnormal = [0, 1, 0]\npoint"][i % 3];
         write!(text, "\n{kind}\n{place} = [ # [[sphere]]\n  0,\n  {i},\n0]\n").expect("a string");
     }
@@ -34,14 +35,17 @@ fn sound(text: &str) -> SceneFile {
 fn every_entry_arrives_in_the_order_of_the_file() {
     let (report, scene) = (report_scene().scene, sound(&format!("{}{LATE}", long())).scene);
     let number = |kind: usize| (kind..ENTRIES).step_by(3).map(|i| i as f64);
-    let lights: Vec<f64> = scene.lights[report.lights.len()..].iter().map(|l| l.position.y).collect();
+    let lights: Vec<f64> =
+        scene.lights[report.lights.len()..].iter().map(|l| l.position.y).collect();
     assert_eq!(lights, number(0).collect::<Vec<_>>());
-    let spheres: Vec<f64> = scene.spheres[report.spheres.len()..].iter().map(|s| s.center.y).collect();
+    let spheres: Vec<f64> =
+        scene.spheres[report.spheres.len()..].iter().map(|s| s.center.y).collect();
     assert_eq!(spheres, number(1).collect::<Vec<_>>());
     let planes: Vec<f64> = scene.planes[report.planes.len()..].iter().map(|p| p.point.y).collect();
     assert_eq!(planes, number(2).collect::<Vec<_>>());
 
-    // By name: blue, floor, green, late, magenta, red. A material may come after all that it is for.
+    // By name: blue, floor, green, late, magenta, red. A material may come after all that it is
+    // for.
     assert_eq!(scene.materials.len(), report.materials.len() + 1);
     assert!(scene.spheres[report.spheres.len()..].iter().all(|sphere| sphere.material == 3));
     assert!(scene.planes[report.planes.len()..].iter().all(|plane| plane.material == 3));
@@ -59,7 +63,8 @@ fn a_header_within_a_string_is_none() {
     for _ in 0..ENTRIES {
         write!(text, "\n[[sphere]]\n{sphere}\n").expect("a string");
     }
-    let file = sound(&format!("{text}[material.\"[[sphere]]\\n[[light]]\\n\"]\ncolor = [0, 0, 0]\n"));
+    let file =
+        sound(&format!("{text}[material.\"[[sphere]]\\n[[light]]\\n\"]\ncolor = [0, 0, 0]\n"));
     assert_eq!(file.scene.spheres.len(), 3 + ENTRIES);
     assert_eq!(file.scene.lights.len(), 1);
 }
@@ -81,21 +86,28 @@ fn a_fault_is_told_as_in_a_short_scene() {
         (
             format!("{sphere} 'lat'\n"),
             format!("{}:12", line + 3),
-            format!("sphere[{spheres}].material: expected the name of a material, found 'lat'; did you mean"),
+            format!(
+                "sphere[{spheres}].material: expected the name of a material, found 'lat'; did you mean"
+            ),
         ),
         (
             format!("{sphere} 'late'\n{sphere} 5\n"),
             format!("{}:12", line + 7),
             format!("sphere[{}].material: expected a string, found the integer 5", spheres + 1),
         ),
-        (format!("{sphere} 'late'\nradius = 2\n"), format!("{}:1", line + 4), format!("{twice} `radius`")),
+        (
+            format!("{sphere} 'late'\nradius = 2\n"),
+            format!("{}:1", line + 4),
+            format!("{twice} `radius`"),
+        ),
         (
             format!("{sphere} 'late'\n[[sphere]]\ncenter = [0, 0"),
             format!("{}:15", line + 5),
             "not valid TOML: unclosed array, expected `]`, found the end of the file".to_owned(),
         ),
     ] {
-        let error = parse(format!("{text}{end}").as_bytes(), "a.toml").expect_err("a fault").to_string();
+        let error =
+            parse(format!("{text}{end}").as_bytes(), "a.toml").expect_err("a fault").to_string();
         assert!(error.starts_with(&format!("a.toml:{place}: {message}")), "{error}");
     }
 }
@@ -105,8 +117,9 @@ fn a_material_of_another_part_is_not_defined_again() {
     let text = format!("{}{LATE}{}", long(), entries());
     let line = text.lines().count() + 1;
     sound(&format!("{text}[material.later]\ncolor = [0, 0, 0]\n"));
-    let error =
-        parse(format!("{text}{LATE}").as_bytes(), "a.toml").expect_err("a material twice").to_string();
+    let error = parse(format!("{text}{LATE}").as_bytes(), "a.toml")
+        .expect_err("a material twice")
+        .to_string();
     assert_eq!(error, format!("a.toml:{line}:11: not valid TOML: duplicate key, found `late`"));
 }
 
@@ -125,7 +138,10 @@ fn what_is_written_inline_is_not_added_to() {
         // Only in a later part: the first has no header of this key.
         let text = format!("{inline}{camera}{}{}{other}", "# long\n".repeat(10_000), entries());
         let error = parse(text.as_bytes(), "a.toml").expect_err("a key twice").to_string();
-        assert!(error.ends_with(&format!("not valid TOML: duplicate key, found `{key}`")), "{error}");
+        assert!(
+            error.ends_with(&format!("not valid TOML: duplicate key, found `{key}`")),
+            "{error}"
+        );
     }
 }
 
@@ -138,7 +154,8 @@ fn the_end_of_a_part_is_not_the_end_of_the_file() {
         let broken = format!("{}\n0\n{}", &text[..at], &text[at + end.len()..]);
         let line = broken[..at].matches('\n').count() + 4;
         let error = parse(broken.as_bytes(), "a.toml").expect_err("an open array").to_string();
-        let expected = "not valid TOML: missing comma between array elements, expected `,`, found `[[";
+        let expected =
+            "not valid TOML: missing comma between array elements, expected `,`, found `[[";
         assert!(error.starts_with(&format!("a.toml:{line}:1: {expected}")), "{error}");
     }
 }

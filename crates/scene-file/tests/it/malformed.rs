@@ -43,7 +43,9 @@ fn every_malformed_scene_is_refused_with_its_message() {
 #[test]
 fn no_message_is_without_its_scene() {
     let messages = fs::read_dir(folder()).expect("the folder is there").filter(|entry| {
-        entry.as_ref().is_ok_and(|entry| entry.path().extension().is_some_and(|ending| ending == "expected"))
+        entry
+            .as_ref()
+            .is_ok_and(|entry| entry.path().extension().is_some_and(|ending| ending == "expected"))
     });
     assert_eq!(messages.count(), cases().len());
     assert!(cases().len() >= 45);

@@ -77,12 +77,16 @@ fn a_polygon_is_a_fan_around_its_first_corner() {
     assert_eq!(triangles(format!("{SQUARE}f 1 2 3\n")), ["0,0,0 1,0,0 1,1,0"]);
     assert_eq!(triangles(format!("{SQUARE}f 2 3 4 1")), ["1,0,0 1,1,0 0,1,0", "1,0,0 0,1,0 0,0,0"]);
     let pentagon = "v 0 0 0\nv 2 0 0\nv 3 2 0\nv 1 3 0\nv -1 2 0\nf 1 2 3 4 5\n";
-    assert_eq!(triangles(pentagon), ["0,0,0 2,0,0 3,2,0", "0,0,0 3,2,0 1,3,0", "0,0,0 1,3,0 -1,2,0"]);
+    assert_eq!(
+        triangles(pentagon),
+        ["0,0,0 2,0,0 3,2,0", "0,0,0 3,2,0 1,3,0", "0,0,0 1,3,0 -1,2,0"]
+    );
 }
 
 #[test]
 fn triangles_come_after_the_scenes_own_mesh_by_mesh_face_by_face() {
-    let triangle = "[[triangle]]\nvertices = [[9, 0, 0], [9, 1, 0], [9, 0, 1]]\nmaterial = 'blue'\n";
+    let triangle =
+        "[[triangle]]\nvertices = [[9, 0, 0], [9, 1, 0], [9, 0, 1]]\nmaterial = 'blue'\n";
     let (first, second) = (mesh("deep/er/first.obj", "red"), mesh("second.obj", "blue"));
     let scene = format!("{SCENE}{first}{second}{triangle}");
     let folder = folder(&[
@@ -91,16 +95,19 @@ fn triangles_come_after_the_scenes_own_mesh_by_mesh_face_by_face() {
         ("second.obj", b"v 2 0 0\nv 2 1 0\nv 2 0 1\nf 1 2 3\n"),
     ]);
     let file = loaded(folder.path()).unwrap_or_else(|error| panic!("{error}"));
-    let expected = ["9,0,0 9,1,0 9,0,1", "1,1,1 1,0,1 1,1,0", "1,0,0 1,1,0 1,0,1", "2,0,0 2,1,0 2,0,1"];
+    let expected =
+        ["9,0,0 9,1,0 9,0,1", "1,1,1 1,0,1 1,1,0", "1,0,0 1,1,0 1,0,1", "2,0,0 2,1,0 2,0,1"];
     assert_eq!(corners(&file.scene.triangles), expected);
-    let materials: Vec<usize> = file.scene.triangles.iter().map(|triangle| triangle.material).collect();
+    let materials: Vec<usize> =
+        file.scene.triangles.iter().map(|triangle| triangle.material).collect();
     assert_eq!(materials, [0, 1, 1, 0]);
 }
 
 #[test]
 fn a_file_may_be_of_more_than_one_mesh() {
     let scene = format!("{SCENE}{}{}", mesh("a.obj", "red"), mesh("./a.obj", "blue"));
-    let folder = folder(&[("a.toml", scene.as_bytes()), ("a.obj", format!("{SQUARE}f 1 2 3").as_bytes())]);
+    let folder =
+        folder(&[("a.toml", scene.as_bytes()), ("a.obj", format!("{SQUARE}f 1 2 3").as_bytes())]);
     let triangles = loaded(folder.path()).unwrap_or_else(|error| panic!("{error}")).scene.triangles;
     assert_eq!(triangles.iter().map(|triangle| triangle.material).collect::<Vec<_>>(), [1, 0]);
     assert_eq!(triangles[0].vertices, triangles[1].vertices);
@@ -133,7 +140,11 @@ fn what_is_not_of_the_contract_is_ignored() {
         "  v\t0  0 0 \r\n\tv 1.0 0e3 -0\r\nv +1. 1 .0\r\n f 1\t2  3 \r\n\r\n",
         "\u{feff}v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3",
     ] {
-        assert_eq!(triangles(obj).iter().map(|t| t.replace("-0", "0")).collect::<Vec<_>>(), plain, "{obj}");
+        assert_eq!(
+            triangles(obj).iter().map(|t| t.replace("-0", "0")).collect::<Vec<_>>(),
+            plain,
+            "{obj}"
+        );
     }
     // Names and comments in any encoding.
     let latin = [b"g caf\xe9 # \xff\n".as_slice(), SQUARE.as_bytes(), b"f 1 2 3 # \xe9\n"].concat();
@@ -142,14 +153,16 @@ fn what_is_not_of_the_contract_is_ignored() {
 
 #[test]
 fn numbers_are_kept_as_exactly_as_those_of_a_scene() {
-    let file = of_obj("v 0.1 1e-3 123456789.123456789\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("sound");
+    let file =
+        of_obj("v 0.1 1e-3 123456789.123456789\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("sound");
     assert_eq!(file.scene.triangles[0].vertices[0], [0.1, 0.001, 123_456_789.123_456_79].into());
 }
 
 #[test]
 fn triangles_without_area_are_skipped_and_counted() {
     // Of the fan 1 2 5 3 4, where 5 is in the middle of 1 and 2, the first triangle alone is flat.
-    let file = of_obj(format!("{SQUARE}v 0.5 0 0\nf 1 2 5 3 4\nf 1 1 2\nf 1 2 1\n")).expect("sound");
+    let file =
+        of_obj(format!("{SQUARE}v 0.5 0 0\nf 1 2 5 3 4\nf 1 1 2\nf 1 2 1\n")).expect("sound");
     assert_eq!(corners(&file.scene.triangles), ["0,0,0 0.5,0,0 1,1,0", "0,0,0 1,1,0 0,1,0"]);
     assert_eq!(file.skipped_triangles, 3);
     assert_eq!(report_scene().skipped_triangles, 0);
@@ -197,15 +210,15 @@ fn a_fault_is_told_with_the_line_and_column_of_the_obj_file() {
 
 #[test]
 fn a_mesh_without_a_triangle_is_a_fault_of_the_scene_file() {
-    let message =
-        "a.toml:13:8: mesh[0].path: expected an OBJ file with a triangle that has an area, found 'a.obj'";
+    let message = "a.toml:13:8: mesh[0].path: expected an OBJ file with a triangle that has an area, found 'a.obj'";
     for obj in ["", "# nothing\n", SQUARE, "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"] {
         assert_eq!(of_obj(obj).expect_err("no triangle"), message);
     }
     // Neither does one mesh stand in for another.
     let scene = format!("{SCENE}{}{}", mesh("full.obj", "red"), mesh("empty.obj", "red"));
     let full = format!("{SQUARE}f 1 2 3\n");
-    let folder = folder(&[("a.toml", scene.as_bytes()), ("full.obj", full.as_bytes()), ("empty.obj", b"")]);
+    let folder =
+        folder(&[("a.toml", scene.as_bytes()), ("full.obj", full.as_bytes()), ("empty.obj", b"")]);
     let error = loaded(folder.path()).expect_err("no triangle");
     assert!(error.starts_with("a.toml:16:8: mesh[1].path: expected an OBJ file"), "{error}");
 }
@@ -222,15 +235,24 @@ fn a_mesh_that_cannot_be_read_is_named() {
     let large = loaded(folder.path()).expect_err("a large mesh");
     assert_eq!(large, "a.obj: larger than the 256 MiB that a file may have");
     fs::remove_file(&path).and_then(|()| fs::create_dir(&path)).expect("a folder");
-    assert_eq!(loaded(folder.path()).expect_err("no file"), "a.obj: expected a file, found a folder");
+    assert_eq!(
+        loaded(folder.path()).expect_err("no file"),
+        "a.obj: expected a file, found a folder"
+    );
 }
 
 #[test]
 fn few_bytes_cannot_stand_for_any_number_of_triangles() {
     let fan = |triangles: usize| format!("{SQUARE}f 1 2{}\n", " 3 2".repeat(triangles / 2));
-    assert_eq!(of_obj(fan(MAX_MESH_TRIANGLES)).expect("sound").scene.triangles.len(), MAX_MESH_TRIANGLES);
+    assert_eq!(
+        of_obj(fan(MAX_MESH_TRIANGLES)).expect("sound").scene.triangles.len(),
+        MAX_MESH_TRIANGLES
+    );
     let error = of_obj(fan(MAX_MESH_TRIANGLES + 2)).expect_err("more than may be");
-    assert_eq!(error, "a.obj:5:1: more than the 8388608 triangles that the meshes of a scene may have");
+    assert_eq!(
+        error,
+        "a.obj:5:1: more than the 8388608 triangles that the meshes of a scene may have"
+    );
 }
 
 #[test]

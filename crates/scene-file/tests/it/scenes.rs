@@ -3,8 +3,12 @@
 use std::path::PathBuf;
 
 use rayweave_core::Scene;
-use rayweave_core::scene::{Camera, Cylinder, Light, Material, Plane, RenderSettings, Sphere, Triangle};
-use rayweave_scene_file::{ImageSize, REPORT_SCENE, SceneFile, SceneFileError, load, parse, report_scene};
+use rayweave_core::scene::{
+    Camera, Cylinder, Light, Material, Plane, RenderSettings, Sphere, Triangle,
+};
+use rayweave_scene_file::{
+    ImageSize, REPORT_SCENE, SceneFile, SceneFileError, load, parse, report_scene,
+};
 
 const CAMERA: &str = "
 [camera]
@@ -96,7 +100,11 @@ fn every_key_arrives_where_it_belongs() {
             antialiasing: 2,
             ..RenderSettings::default()
         },
-        lights: vec![Light { position: [-15.0, 10.0, 10.0].into(), color: [1.0; 3].into(), power: 1.0 }],
+        lights: vec![Light {
+            position: [-15.0, 10.0, 10.0].into(),
+            color: [1.0; 3].into(),
+            power: 1.0,
+        }],
         materials: vec![Material {
             color: [1.0, 0.0, 0.0].into(),
             ambient: 0.1,
@@ -105,7 +113,11 @@ fn every_key_arrives_where_it_belongs() {
             shininess: 2,
             reflection: 0.0,
         }],
-        planes: vec![Plane { point: [0.0, -1.0, 0.0].into(), normal: [0.0, 1.0, 0.0].into(), material: 0 }],
+        planes: vec![Plane {
+            point: [0.0, -1.0, 0.0].into(),
+            normal: [0.0, 1.0, 0.0].into(),
+            material: 0,
+        }],
         spheres: vec![Sphere { center: [0.0; 3].into(), radius: 1.0, material: 0 }],
         triangles: vec![Triangle {
             vertices: [[0.0; 3].into(), [1.0, 0.0, 0.0].into(), [0.0, 1.0, 0.0].into()],
@@ -144,8 +156,10 @@ fn optional_keys_have_the_defaults_of_the_model() {
         "reflection",
         "color = [1.0, 1.0, 1.0]",
     ];
-    let silent: Vec<&str> =
-        EVERYTHING.lines().filter(|line| !optional.iter().any(|key| line.starts_with(key))).collect();
+    let silent: Vec<&str> = EVERYTHING
+        .lines()
+        .filter(|line| !optional.iter().any(|key| line.starts_with(key)))
+        .collect();
     assert_eq!(silent.len(), EVERYTHING.lines().count() - optional.len());
     assert_eq!(sound(&silent.join("\n")), stated);
 
@@ -191,7 +205,8 @@ reflection = 1
         ..RenderSettings::default()
     };
     assert_eq!(file.scene.render, render);
-    let light = Light { position: [1.0, 2.0, 3.0].into(), color: [0.5, 0.25, 0.0].into(), power: 7.0 };
+    let light =
+        Light { position: [1.0, 2.0, 3.0].into(), color: [0.5, 0.25, 0.0].into(), power: 7.0 };
     assert_eq!(file.scene.lights, [light]);
     let material = Material {
         color: [0.1, 0.2, 0.3].into(),
@@ -215,7 +230,8 @@ fn the_report_scene_is_the_reports() {
         [Light { position: [-15.0, 10.0, 10.0].into(), color: [1.0; 3].into(), power: 1.0 }]
     );
 
-    let material = |color: [f64; 3], reflection: f64| Material { reflection, ..Material::new(color.into()) };
+    let material =
+        |color: [f64; 3], reflection: f64| Material { reflection, ..Material::new(color.into()) };
     let (mirror, dim) = (0.47368421052631576, 0.3333333333333333);
     // By name: blue, floor, green, magenta, red.
     let (blue, floor, green, magenta, red) = (0, 1, 2, 3, 4);
@@ -233,7 +249,8 @@ fn the_report_scene_is_the_reports() {
         scene.planes,
         [Plane { point: [0.0, -1.0, 0.0].into(), normal: [0.0, 1.0, 0.0].into(), material: floor }]
     );
-    let sphere = |center: [f64; 3], radius, material| Sphere { center: center.into(), radius, material };
+    let sphere =
+        |center: [f64; 3], radius, material| Sphere { center: center.into(), radius, material };
     assert_eq!(
         scene.spheres,
         [
@@ -245,7 +262,11 @@ fn the_report_scene_is_the_reports() {
     assert_eq!(
         scene.triangles,
         [Triangle {
-            vertices: [[0.5, -1.0, -3.0].into(), [-1.0, -0.8, -2.5].into(), [-1.7, 0.2, -2.5].into()],
+            vertices: [
+                [0.5, -1.0, -3.0].into(),
+                [-1.0, -0.8, -2.5].into(),
+                [-1.7, 0.2, -2.5].into()
+            ],
             material: magenta,
         }]
     );
@@ -267,7 +288,14 @@ fn the_scenes_of_the_project_load() {
         let file = load(&folder.join(name)).unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(file.scene.check(), Ok(()));
         let Scene { lights, materials, planes, spheres, triangles, cylinders, .. } = file.scene;
-        [lights.len(), materials.len(), planes.len(), spheres.len(), triangles.len(), cylinders.len()]
+        [
+            lights.len(),
+            materials.len(),
+            planes.len(),
+            spheres.len(),
+            triangles.len(),
+            cylinders.len(),
+        ]
     };
     assert_eq!(count("report.toml"), [1, 5, 1, 3, 1, 1]);
     assert_eq!(count("room.toml"), [2, 10, 3, 4, 2, 1]);
@@ -282,7 +310,8 @@ fn an_integer_may_stand_for_a_float() {
          up = [0x10, -9223372036854775808, 0], focal_length = 3, screen_width = 1e3 }",
     );
     let camera = file.scene.camera;
-    // 2^53 + 1 lies between two floats; the even one is the nearest, as for its digits with a point.
+    // 2^53 + 1 lies between two floats; the even one is the nearest, as for its digits with a
+    // point.
     assert_eq!(camera.position, [0.0, 0.0, 9_007_199_254_740_993.0].into());
     assert_eq!(camera.look_at, [1.0, 3.0, 15.0].into());
     assert_eq!(camera.up, [16.0, -2_f64.powi(63), 0.0].into());
@@ -303,12 +332,16 @@ fn materials_may_have_any_name_and_stand_anywhere() {
     let mut text = String::from(CAMERA);
     for (i, name) in names.iter().enumerate() {
         // A primitive refers to a material that comes below it.
-        let quoted = if name.starts_with(['"', '\'']) { String::from(*name) } else { format!("\"{name}\"") };
-        text.push_str(&format!("[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\nmaterial = {quoted}\n"));
+        let quoted =
+            if name.starts_with(['"', '\'']) { String::from(*name) } else { format!("\"{name}\"") };
+        text.push_str(&format!(
+            "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\nmaterial = {quoted}\n"
+        ));
         text.push_str(&format!("[material.{name}]\ncolor = [0, 0, 0]\nambient = {i}\n"));
     }
     let scene = sound(&text).scene;
-    let ambient: Vec<f64> = scene.spheres.iter().map(|s| scene.materials[s.material].ambient).collect();
+    let ambient: Vec<f64> =
+        scene.spheres.iter().map(|s| scene.materials[s.material].ambient).collect();
     assert_eq!(ambient, [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
 }
 

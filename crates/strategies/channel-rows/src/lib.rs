@@ -1,16 +1,18 @@
 //! `channel-rows`: N threads compute rows and send them to the one thread that owns the picture.
 //!
-//! * **What it decides**: that nothing is shared but the next row's number and a channel. A thread takes
-//!   the next row, computes it into memory of its own, and sends that; the caller's thread copies.
-//! * **What it costs**: an allocation, a message and a copy for every row, the samples that a row shares
-//!   with its neighbours, starting the threads within every rendering, and a thread more than N that
-//!   only copies. Rows that nobody has copied yet take memory: at the worst as much as the picture.
-//! * **When it is right**: when results must not be written in place: they are of a size that nobody
-//!   knows beforehand, or go to a file or a window that one thread owns.
+//! * **What it decides**: that nothing is shared but the next row's number and a channel. A thread
+//!   takes the next row, computes it into memory of its own, and sends that; the caller's thread
+//!   copies.
+//! * **What it costs**: an allocation, a message and a copy for every row, the samples that a row
+//!   shares with its neighbours, starting the threads within every rendering, and a thread more
+//!   than N that only copies. Rows that nobody has copied yet take memory: at the worst as much as
+//!   the picture.
+//! * **When it is right**: when results must not be written in place: they are of a size that
+//!   nobody knows beforehand, or go to a file or a window that one thread owns.
 
 use rayweave_contract::{
-    Dealing, Delivery, Image, Piece, Plan, Renderer, Rgb, Rule, Strategy, StrategyError, ThreadsStart, Tile,
-    Work,
+    Dealing, Delivery, Image, Piece, Plan, Renderer, Rgb, Rule, Strategy, StrategyError,
+    ThreadsStart, Tile, Work,
 };
 use rayweave_thread_team as thread_team;
 use std::iter;

@@ -11,7 +11,8 @@
 
 use parking_lot::Mutex;
 use rayweave_contract::{
-    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart, Tile, Work,
+    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart,
+    Tile, Work,
 };
 use rayweave_thread_team as thread_team;
 use std::num::NonZeroUsize;

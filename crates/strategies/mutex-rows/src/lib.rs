@@ -1,16 +1,18 @@
 //! `mutex-rows`: as `mutex-image`, but the lock around the picture is taken once a row.
 //!
-//! * **What it decides**: everything beforehand. Thread `i` of `n` gets the `i`-th of `n` equal ranges
-//!   of rows, computes a row into memory of its own, and copies it under the lock.
-//! * **What it costs**: a lock and a copy for every row, starting the threads within every rendering,
-//!   every sample that a row shares with its neighbours, and all of the imbalance of the picture.
-//! * **When it is right**: when results go into something that cannot be cut into disjoint parts, such
-//!   as a map or a file. Beside `mutex-image` it shows that a lock costs by how often it is taken; what
-//!   is left is the price of dealing out beforehand.
+//! * **What it decides**: everything beforehand. Thread `i` of `n` gets the `i`-th of `n` equal
+//!   ranges of rows, computes a row into memory of its own, and copies it under the lock.
+//! * **What it costs**: a lock and a copy for every row, starting the threads within every
+//!   rendering, every sample that a row shares with its neighbours, and all of the imbalance of the
+//!   picture.
+//! * **When it is right**: when results go into something that cannot be cut into disjoint parts,
+//!   such as a map or a file. Beside `mutex-image` it shows that a lock costs by how often it is
+//!   taken; what is left is the price of dealing out beforehand.
 
 use parking_lot::Mutex;
 use rayweave_contract::{
-    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart, Tile, Work,
+    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart,
+    Tile, Work,
 };
 use rayweave_thread_team as thread_team;
 use std::num::NonZeroUsize;

@@ -1,20 +1,20 @@
-//! `openmp-static`, `openmp-dynamic`, `openmp-guided`: the report's own way, OpenMP's parallel loop, with
-//! the C compiler's OpenMP and the work in Rust.
+//! `openmp-static`, `openmp-dynamic`, `openmp-guided`: the report's own way, OpenMP's parallel
+//! loop, with the C compiler's OpenMP and the work in Rust.
 //!
-//! * **What it decides**: `static` everything beforehand: each thread gets one of N equal ranges of tiles.
-//!   `dynamic` nothing: whoever is free takes the next tile. `guided` begins with large pieces, what is
-//!   left over N, and ends with single tiles.
+//! * **What it decides**: `static` everything beforehand: each thread gets one of N equal ranges of
+//!   tiles. `dynamic` nothing: whoever is free takes the next tile. `guided` begins with large
+//!   pieces, what is left over N, and ends with single tiles.
 //! * **What it costs**: a C compiler at build time, unsafe code at the border, an unmet lock a tile
-//!   (some 10 ns: that OpenMP gives each index to one thread, the compiler cannot know), and threads that
-//!   are started once. `static` has all of the imbalance of the picture, `dynamic` an atomic addition a
-//!   tile, `guided` fewer of them.
-//! * **When it is right**: when a program in C or C++ has OpenMP already, and Rust is called from its
-//!   loops. In Rust alone `tile-queue` or `rayon-tiles` do the same without `unsafe`.
+//!   (some 10 ns: that OpenMP gives each index to one thread, the compiler cannot know), and
+//!   threads that are started once. `static` has all of the imbalance of the picture, `dynamic` an
+//!   atomic addition a tile, `guided` fewer of them.
+//! * **When it is right**: when a program in C or C++ has OpenMP already, and Rust is called from
+//!   its loops. In Rust alone `tile-queue` or `rayon-tiles` do the same without `unsafe`.
 //!
-//! The caller's thread is one of the N. `OMP_PROC_BIND`, `OMP_PLACES` and `OMP_WAIT_POLICY` work as ever;
-//! the number of threads is the one asked for, whatever `OMP_NUM_THREADS` or `OMP_DYNAMIC` say, and an
-//! error where `OMP_THREAD_LIMIT` is lower. Built without OpenMP these strategies are unavailable, and say
-//! what was missing.
+//! The caller's thread is one of the N. `OMP_PROC_BIND`, `OMP_PLACES` and `OMP_WAIT_POLICY` work as
+//! ever; the number of threads is the one asked for, whatever `OMP_NUM_THREADS` or `OMP_DYNAMIC`
+//! say, and an error where `OMP_THREAD_LIMIT` is lower. Built without OpenMP these strategies are
+//! unavailable, and say what was missing.
 
 use rayweave_contract::{
     Dealing, Delivery, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart,

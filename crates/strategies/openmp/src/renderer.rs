@@ -17,7 +17,11 @@ pub struct TileLoop {
 }
 
 impl TileLoop {
-    pub fn start(strategy: &'static str, schedule: Schedule, plan: Plan) -> Result<Self, StrategyError> {
+    pub fn start(
+        strategy: &'static str,
+        schedule: Schedule,
+        plan: Plan,
+    ) -> Result<Self, StrategyError> {
         // gcc's OpenMP ends the process where a thread cannot be started.
         thread_team::try_out(strategy, plan.threads)?;
         let threads = plan.threads.get();
@@ -39,10 +43,12 @@ impl TileLoop {
 
 impl Renderer for TileLoop {
     fn render(&mut self, work: &dyn Work, image: &mut Image) -> Result<(), StrategyError> {
-        let tiles: Vec<Mutex<Tile<'_>>> = image.tiles(self.tile).into_iter().map(Mutex::new).collect();
+        let tiles: Vec<Mutex<Tile<'_>>> =
+            image.tiles(self.tile).into_iter().map(Mutex::new).collect();
         let team = Team::new(self.strategy);
         ffi::for_each(self.schedule, self.threads, tiles.len(), &|index| {
-            // After a failure the rest of the iterations return at once: a loop of OpenMP has no way out.
+            // After a failure the rest of the iterations return at once: a loop of OpenMP has no
+            // way out.
             let _ = team.render_tile(work, &mut tiles[index].lock());
         });
         team.outcome()

@@ -1,10 +1,10 @@
-//! `rayon-rows`: a parallel loop over the rows, as `#pragma omp parallel for` around the outer of two
-//! loops.
+//! `rayon-rows`: a parallel loop over the rows, as `#pragma omp parallel for` around the outer of
+//! two loops.
 //!
-//! * **What it decides**: that a row is the smallest piece. rayon splits the range of rows in halves
-//!   as long as idle threads steal them, never below [`MIN_LEN`].
-//! * **What it costs**: a pool that is started once (some 100 us), and every sample that a row shares
-//!   with the rows above and below it.
+//! * **What it decides**: that a row is the smallest piece. rayon splits the range of rows in
+//!   halves as long as idle threads steal them, never below [`MIN_LEN`].
+//! * **What it costs**: a pool that is started once (some 100 us), and every sample that a row
+//!   shares with the rows above and below it.
 //! * **When it is right**: where a loop over rows is already there, and a row takes microseconds or
 //!   more. It is as short as `rayon-pixels` and calls the work once a row.
 //!
@@ -15,8 +15,8 @@ use rayon::ThreadPool;
 use rayon::iter::{IndexedParallelIterator, ParallelIterator};
 use rayon::slice::ParallelSliceMut;
 use rayweave_contract::{
-    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart, Tile, Work,
-    render_tile,
+    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart,
+    Tile, Work, render_tile,
 };
 
 const NAME: &str = "rayon-rows";

@@ -1,10 +1,10 @@
 //! `rayon-tiles`: a parallel loop over the tiles.
 //!
-//! * **What it decides**: that a tile is the smallest piece. rayon splits the list of tiles in halves
-//!   as long as idle threads steal them, never below [`MIN_LEN`].
-//! * **What it costs**: a pool that is started once (some 100 us), cutting the picture into tiles, and
-//!   waiting at the end: a part is split while idle threads ask for it, not once it is being computed.
-//!   With all of the cost in one corner the threads that are done wait for that part
+//! * **What it decides**: that a tile is the smallest piece. rayon splits the list of tiles in
+//!   halves as long as idle threads steal them, never below [`MIN_LEN`].
+//! * **What it costs**: a pool that is started once (some 100 us), cutting the picture into tiles,
+//!   and waiting at the end: a part is split while idle threads ask for it, not once it is being
+//!   computed. With all of the cost in one corner the threads that are done wait for that part
 //!   (scenes/loads/corner.toml); `with_max_len` would keep parts small, for a task a tile.
 //! * **When it is right**: for moderately uneven work whose pixels share something with their
 //!   neighbours, in a program that has rayon already: one line a loop.
@@ -15,8 +15,8 @@
 use rayon::ThreadPool;
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
 use rayweave_contract::{
-    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart, Work,
-    render_tile,
+    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart,
+    Work, render_tile,
 };
 use std::num::NonZeroU32;
 
@@ -47,7 +47,10 @@ impl Strategy for RayonTiles {
     }
 
     fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
-        Ok(Box::new(TileLoop { pool: rayweave_rayon_pool::build(NAME, plan.threads)?, tile: plan.tile }))
+        Ok(Box::new(TileLoop {
+            pool: rayweave_rayon_pool::build(NAME, plan.threads)?,
+            tile: plan.tile,
+        }))
     }
 }
 
@@ -60,7 +63,10 @@ impl Renderer for TileLoop {
     fn render(&mut self, work: &dyn Work, image: &mut Image) -> Result<(), StrategyError> {
         let mut tiles = image.tiles(self.tile);
         self.pool.install(|| {
-            tiles.par_iter_mut().with_min_len(MIN_LEN).try_for_each(|tile| render_tile(NAME, work, tile))
+            tiles
+                .par_iter_mut()
+                .with_min_len(MIN_LEN)
+                .try_for_each(|tile| render_tile(NAME, work, tile))
         })
     }
 }

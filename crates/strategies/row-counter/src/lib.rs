@@ -1,18 +1,20 @@
 //! `row-counter`: whoever is free takes the next row, by one atomic counter.
 //!
-//! * **What it decides**: nothing beforehand. The counter says which row is next; adding one to it is
-//!   all that taking a row takes, so the load balances itself down to a row.
-//! * **What it costs**: an atomic addition and an unmet lock a row (some 10 ns), starting the threads
-//!   within every rendering, and every sample that a row shares with the rows above and below it.
+//! * **What it decides**: nothing beforehand. The counter says which row is next; adding one to it
+//!   is all that taking a row takes, so the load balances itself down to a row.
+//! * **What it costs**: an atomic addition and an unmet lock a row (some 10 ns), starting the
+//!   threads within every rendering, and every sample that a row shares with the rows above and
+//!   below it.
 //! * **When it is right**: for uneven work of which a row is a good piece: many rows, each of them
 //!   much longer than the addition. Tiles share more between their pixels.
 //!
-//! No two threads get the same number, but the compiler cannot know. So each row lies in a lock of its
-//! own, which nobody else ever asks for: what that costs is the price of safe Rust here.
+//! No two threads get the same number, but the compiler cannot know. So each row lies in a lock of
+//! its own, which nobody else ever asks for: what that costs is the price of safe Rust here.
 
 use parking_lot::Mutex;
 use rayweave_contract::{
-    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart, Tile, Work,
+    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart,
+    Tile, Work,
 };
 use rayweave_thread_team as thread_team;
 use std::iter;
@@ -39,7 +41,11 @@ impl Strategy for RowCounter {
     }
 
     fn rule(&self) -> Rule {
-        Rule { piece: Piece::Row, dealing: Dealing::Shared { chunk: 1 }, delivery: Delivery::InPlace }
+        Rule {
+            piece: Piece::Row,
+            dealing: Dealing::Shared { chunk: 1 },
+            delivery: Delivery::InPlace,
+        }
     }
 
     fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {

@@ -1,18 +1,21 @@
 //! `scoped-bands`: one scoped thread for each of N bands of rows, and nothing else.
 //!
-//! * **What it decides**: everything beforehand. The picture is cut into as many bands of whole rows
-//!   as there are threads, equal but for one row; a thread computes its band as one large tile.
-//! * **What it costs**: starting the threads within every rendering, and all of the imbalance of the
-//!   picture: it takes as long as its most expensive band. No lock, no queue, and only the rows
+//! * **What it decides**: everything beforehand. The picture is cut into as many bands of whole
+//!   rows as there are threads, equal but for one row; a thread computes its band as one large
+//!   tile.
+//! * **What it costs**: starting the threads within every rendering, and all of the imbalance of
+//!   the picture: it takes as long as its most expensive band. No lock, no queue, and only the rows
 //!   between two bands are too far apart to share samples.
-//! * **When it is right**: for even work, where nothing can be cheaper; and as a first step, since it
-//!   needs the standard library alone. Once some rows cost more than others, leave it.
+//! * **When it is right**: for even work, where nothing can be cheaper; and as a first step, since
+//!   it needs the standard library alone. Once some rows cost more than others, leave it.
 //!
-//! `split_off_mut` hands each thread the rows that it alone may write, so the compiler has proved that
-//! no lock is needed. A band that has begun is computed to its end, even when another one has failed.
+//! `split_off_mut` hands each thread the rows that it alone may write, so the compiler has proved
+//! that no lock is needed. A band that has begun is computed to its end, even when another one has
+//! failed.
 
 use rayweave_contract::{
-    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart, Tile, Work,
+    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart,
+    Tile, Work,
 };
 use rayweave_thread_team as thread_team;
 use std::num::NonZeroUsize;

@@ -7,8 +7,8 @@
 //!   microseconds), or when the cores are busy with other pictures already.
 
 use rayweave_contract::{
-    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart, Work,
-    render_tile,
+    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart,
+    Work, render_tile,
 };
 use std::num::NonZeroU32;
 

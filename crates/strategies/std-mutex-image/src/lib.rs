@@ -1,15 +1,16 @@
 //! `std-mutex-image`: `mutex-image` once more, with the lock of the standard library.
 //!
 //! * **What it decides**: what `mutex-image` decides: an equal range of pixels for each thread.
-//! * **What it costs**: the same, but for the lock: `std::sync::Mutex` instead of `parking_lot`'s. It
-//!   remembers whether a thread panicked while holding it, and where threads meet it asks the operating
-//!   system sooner or later than the other.
-//! * **When it is right**: never for this loop, as `mutex-image`. It is here because a C++ program's
-//!   `std::mutex` would be rewritten to it, and to show in one table whether the choice of a lock is
-//!   worth a thought.
+//! * **What it costs**: the same, but for the lock: `std::sync::Mutex` instead of `parking_lot`'s.
+//!   It remembers whether a thread panicked while holding it, and where threads meet it asks the
+//!   operating system sooner or later than the other.
+//! * **When it is right**: never for this loop, as `mutex-image`. It is here because a C++
+//!   program's `std::mutex` would be rewritten to it, and to show in one table whether the choice
+//!   of a lock is worth a thought.
 
 use rayweave_contract::{
-    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart, Tile, Work,
+    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart,
+    Tile, Work,
 };
 use rayweave_thread_team as thread_team;
 use std::num::NonZeroUsize;

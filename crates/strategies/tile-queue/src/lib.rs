@@ -13,7 +13,8 @@
 
 use crossbeam::queue::ArrayQueue;
 use rayweave_contract::{
-    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart, Work,
+    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart,
+    Work,
 };
 use rayweave_thread_team as thread_team;
 use std::iter;
@@ -38,7 +39,11 @@ impl Strategy for TileQueue {
     }
 
     fn rule(&self) -> Rule {
-        Rule { piece: Piece::Tile, dealing: Dealing::Shared { chunk: 1 }, delivery: Delivery::InPlace }
+        Rule {
+            piece: Piece::Tile,
+            dealing: Dealing::Shared { chunk: 1 },
+            delivery: Delivery::InPlace,
+        }
     }
 
     fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {

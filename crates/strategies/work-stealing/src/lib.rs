@@ -1,20 +1,21 @@
 //! `work-stealing`: each thread has tiles of its own, and takes another's when they are done.
 //!
-//! * **What it decides**: a first share for each thread, an equal range of the tiles. A thread takes
-//!   its own from the front; whoever is idle takes half of another's from the back.
+//! * **What it decides**: a first share for each thread, an equal range of the tiles. A thread
+//!   takes its own from the front; whoever is idle takes half of another's from the back.
 //! * **What it costs**: cutting the picture into tiles and dealing them out, starting the threads
-//!   within every rendering, and at the end up to one tile's time of waiting. A tile of one's own costs
-//!   no more than a few ns, whatever the other threads do; a theft some 100 ns.
-//! * **When it is right**: for uneven work on many threads, where one queue would be what they all wait
-//!   for; and where neighbouring tiles in one thread find their data in its cache.
+//!   within every rendering, and at the end up to one tile's time of waiting. A tile of one's own
+//!   costs no more than a few ns, whatever the other threads do; a theft some 100 ns.
+//! * **When it is right**: for uneven work on many threads, where one queue would be what they all
+//!   wait for; and where neighbouring tiles in one thread find their data in its cache.
 //!
-//! The deques are `crossbeam`'s, after Chase and Lev (2005). Nobody adds tiles, so a thread that finds
-//! all deques empty leaves. A thief has what it took for a moment in no deque, and who looks just then
-//! leaves too early: then fewer threads share the rest, and nothing is lost.
+//! The deques are `crossbeam`'s, after Chase and Lev (2005). Nobody adds tiles, so a thread that
+//! finds all deques empty leaves. A thief has what it took for a moment in no deque, and who looks
+//! just then leaves too early: then fewer threads share the rest, and nothing is lost.
 
 use crossbeam::deque::{Steal, Stealer, Worker};
 use rayweave_contract::{
-    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart, Tile, Work,
+    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart,
+    Tile, Work,
 };
 use rayweave_thread_team as thread_team;
 
@@ -74,9 +75,13 @@ impl Renderer for Deques {
     }
 }
 
-/// A tile from the first other thread that has some, starting at the next one, so that not all thieves
-/// meet; half of the rest of that thread's tiles come into `deque`.
-fn steal<'a>(own: usize, deque: &Worker<Tile<'a>>, stealers: &[Stealer<Tile<'a>>]) -> Option<Tile<'a>> {
+/// A tile from the first other thread that has some, starting at the next one, so that not all
+/// thieves meet; half of the rest of that thread's tiles come into `deque`.
+fn steal<'a>(
+    own: usize,
+    deque: &Worker<Tile<'a>>,
+    stealers: &[Stealer<Tile<'a>>],
+) -> Option<Tile<'a>> {
     let (before, after) = stealers.split_at(own);
     after.iter().skip(1).chain(before).find_map(|victim| {
         loop {
