@@ -168,8 +168,8 @@ impl Probe {
     #[must_use]
     pub fn pixels(&self) -> u64 {
         let mut image = self.image();
-        let areas = self.tiles(&mut image).iter().map(Tile::area).collect::<Vec<_>>();
-        areas.iter().map(|area| u64::from(area.width) * u64::from(area.height)).sum()
+        let areas = self.tiles(&mut image).iter().map(Tile::rect).collect::<Vec<_>>();
+        areas.iter().map(|rect| u64::from(rect.width) * u64::from(rect.height)).sum()
     }
 
     /// The number of pixels in these tiles whose first ray hits something. It is rendered once to

@@ -9,7 +9,7 @@ use criterion::{
     BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main,
 };
 use rayweave_benches::{Load, loads};
-use rayweave_contract::{Digest, Image, Plan, ThreadsStart};
+use rayweave_contract::{Digest, Image, Plan, Threads};
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::thread::available_parallelism;
 use std::time::Duration;
@@ -34,7 +34,7 @@ fn strategies(criterion: &mut Criterion) {
         let mut image = Image::new(load.width, load.height).expect("a small picture");
         let mut expected = None;
         for strategy in rayweave_registry::available() {
-            let alone = strategy.threads_start() == ThreadsStart::Never;
+            let alone = strategy.threads() == Threads::None;
             for &threads in if alone { &[1][..] } else { &counts } {
                 let plan = Plan { threads: NonZeroUsize::new(threads).expect("not 0"), tile: TILE };
                 let mut renderer = strategy.prepare(plan).expect("the strategy is available");

@@ -1,6 +1,6 @@
 //! A ray and a triangle of any `f32` numbers, NaN, infinities and subnormals among them.
 //!
-//! Must hold: no panic; a miss where a number is not finite, or where a scene would find no area;
+//! Must hold: no panic; a miss where a number is not finite, or where a scene would find no rect;
 //! in f64 the right verdict on every decidable case and the `t` that its condition number allows,
 //! unless no digit of `t` is certain; in f32 the same, for differences of positions of 0 or 2^-20
 //! to 2^27, and directions of which no component but 0 is below 2^-20 of the longest. Where a

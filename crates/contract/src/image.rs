@@ -211,15 +211,16 @@ impl fmt::Display for Digest {
 
 /// The 64 hexadecimal digits that a digest is displayed as.
 impl FromStr for Digest {
-    type Err = NotADigest;
+    type Err = ParseDigestError;
 
-    fn from_str(text: &str) -> Result<Self, NotADigest> {
+    fn from_str(text: &str) -> Result<Self, ParseDigestError> {
         let mut bytes = [0; 32];
         if text.len() != 2 * bytes.len() || !text.bytes().all(|digit| digit.is_ascii_hexdigit()) {
-            return Err(NotADigest);
+            return Err(ParseDigestError);
         }
         for (byte, place) in bytes.iter_mut().zip((0..).step_by(2)) {
-            *byte = u8::from_str_radix(&text[place..place + 2], 16).map_err(|_| NotADigest)?;
+            *byte =
+                u8::from_str_radix(&text[place..place + 2], 16).map_err(|_| ParseDigestError)?;
         }
         Ok(Self(bytes))
     }
@@ -228,7 +229,7 @@ impl FromStr for Digest {
 /// A text that is no [`Digest`].
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 #[error("a digest has 64 hexadecimal digits")]
-pub struct NotADigest;
+pub struct ParseDigestError;
 
 impl fmt::Debug for Digest {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -1,4 +1,44 @@
 //! The contract by which work and strategy know nothing of each other.
+//!
+//! * [`Work`] is a pure function that fills any [`Tile`] of an [`Image`]; the tracer is one.
+//! * A [`Strategy`] decides which thread computes which tile, and states its [`Policy`]. Prepared
+//!   for a [`Plan`], it is a [`Renderer`].
+//! * Whatever observes a rendering is a `Work` around a `Work`.
+//!
+//! This crate starts no thread, opens no file and reads no clock.
+//!
+//! ```
+//! use rayweave_contract::{Image, Renderer, StrategyError, Tile, Work, render_tile};
+//!
+//! /// A gradient: the work.
+//! struct Gradient;
+//!
+//! impl Work for Gradient {
+//!     fn render(&self, tile: &mut Tile<'_>) {
+//!         let left = tile.rect().x;
+//!         for (y, row) in tile.rows() {
+//!             for (x, color) in (left..).zip(row) {
+//!                 *color = [x as f32, y as f32, 0.0];
+//!             }
+//!         }
+//!     }
+//! }
+//!
+//! /// One tile after the other: the simplest renderer.
+//! struct OneByOne;
+//!
+//! impl Renderer for OneByOne {
+//!     fn render(&mut self, work: &dyn Work, image: &mut Image) -> Result<(), StrategyError> {
+//!         let tiles = image.tiles(std::num::NonZeroU32::new(2).unwrap());
+//!         tiles.into_iter().try_for_each(|mut tile| render_tile("one-by-one", work, &mut tile))
+//!     }
+//! }
+//!
+//! let mut image = Image::new(3, 2)?;
+//! OneByOne.render(&Gradient, &mut image)?;
+//! assert_eq!(image.pixels()[5], [2.0, 1.0, 0.0]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod image;
 mod policy;
@@ -6,10 +46,8 @@ mod strategy;
 mod tile;
 mod work;
 
-pub use image::{Digest, Image, ImageError, MAX_PIXELS, NotADigest, Rgb};
-pub use policy::{Dealing, Delivery, Piece, Rule};
-pub use strategy::{
-    Plan, Renderer, Strategy, StrategyError, ThreadsStart, panic_message, render_tile,
-};
-pub use tile::{Area, Tile};
+pub use image::{Digest, Image, ImageError, MAX_PIXELS, ParseDigestError, Rgb};
+pub use policy::{Granularity, Output, Policy, Scheduling, Threads};
+pub use strategy::{Plan, Renderer, Strategy, StrategyError, panic_message, render_tile};
+pub use tile::{Rect, Tile};
 pub use work::Work;

@@ -1,57 +1,99 @@
-//! What a strategy decides, in OpenMP's words: how large a piece is, who gets it, how it gets into
-//! the image.
+//! What a strategy decides: the granularity of its pieces, their scheduling, and their output.
 
-/// How a strategy deals out the work.
+use std::num::NonZeroUsize;
+
+/// What a strategy decides. A simulation goes by the policy alone.
+///
+/// ```
+/// use rayweave_contract::{Granularity, Output, Policy, Scheduling};
+///
+/// // OpenMP's `schedule(dynamic, 4)` over rows that are written in place.
+/// let policy = Policy {
+///     granularity: Granularity::Row,
+///     scheduling: Scheduling::Dynamic { chunk: 4 },
+///     output: Output::InPlace,
+/// };
+/// assert_ne!(policy.scheduling, Scheduling::Static);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Rule {
-    /// What is computed at once, and so may share samples.
-    pub piece: Piece,
-    /// Who gets which pieces.
-    pub dealing: Dealing,
-    /// How a finished piece comes into the picture.
-    pub delivery: Delivery,
+pub struct Policy {
+    /// The piece that a thread computes at once; pixels of one piece can share samples.
+    pub granularity: Granularity,
+    /// Which thread gets which pieces.
+    pub scheduling: Scheduling,
+    /// How a finished piece gets into the image.
+    pub output: Output,
 }
 
-/// What a thread computes at once.
+/// The piece that a thread computes at once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Piece {
+pub enum Granularity {
     /// One pixel.
     Pixel,
-    /// One row of the picture.
+    /// One row of the image.
     Row,
-    /// A tile of [`Plan::tile`].
+    /// A tile of [`Plan::tile`](crate::Plan::tile) pixels a side.
     Tile,
-    /// All rows that a thread gets.
+    /// All rows of one thread.
     Band,
 }
 
-/// Who gets which pieces; these are numbered from the top left, row by row.
+/// Which thread gets which pieces. Pieces are numbered from the top left, row by row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Dealing {
-    /// Beforehand: each thread one of as many equal ranges of them.
-    Equal,
-    /// Whoever is free takes the next `chunk` of them, in order.
-    Shared {
+pub enum Scheduling {
+    /// Each thread gets one of N equal ranges, fixed beforehand.
+    Static,
+    /// A free thread takes the next `chunk` pieces, in order.
+    Dynamic {
         /// Pieces taken at a time, 1 or more.
         chunk: usize,
     },
-    /// Whoever is free takes, in order, those that are left over the number of threads: ever fewer.
+    /// A free thread takes the remaining pieces divided by the number of threads, in order: chunks
+    /// get smaller towards the end.
     Guided,
-    /// Each thread has a range of its own; whoever is idle takes half of another's.
-    Stealing,
-    /// One thread halves the whole range until there are about twice as many parts as threads; a
-    /// part that an idle thread takes from another is halved again as often. Within a part nothing
-    /// is taken. So rayon's loops do.
-    Halving,
+    /// Each thread has a range of its own; an idle thread takes half of another's.
+    WorkStealing,
+    /// One thread halves the whole range until there are about twice as many parts as threads. A
+    /// part that an idle thread steals is halved again as often; within a part nothing is stolen.
+    /// This is what rayon's loops do.
+    RecursiveSplit,
 }
 
-/// How a finished piece comes into the picture.
+/// How a finished piece gets into the image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Delivery {
-    /// It was written there.
+pub enum Output {
+    /// It is computed in its place.
     InPlace,
-    /// It is copied under a lock that all threads share.
-    Locked,
-    /// It is sent to the thread that owns the picture, which copies it.
-    Sent,
+    /// It is copied while holding a mutex around the image.
+    Mutex,
+    /// It is sent through a channel to the thread that owns the image, which copies it.
+    Channel,
+}
+
+/// Where a strategy starts its threads, and so which figure contains that cost.
+///
+/// ```
+/// use rayweave_contract::Threads;
+/// use std::num::NonZeroUsize;
+///
+/// let four = NonZeroUsize::new(4).unwrap();
+/// assert_eq!(Threads::Pool.computing_threads(four), four);
+/// assert_eq!(Threads::None.computing_threads(four).get(), 1);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Threads {
+    /// It starts none: the caller's thread computes alone, whatever the plan says.
+    None,
+    /// A pool is started by `prepare`, outside of a rendering's time.
+    Pool,
+    /// Threads are started by every `render`, within its time.
+    PerRender,
+}
+
+impl Threads {
+    /// Returns the number of threads that compute when `requested` are asked for.
+    #[must_use]
+    pub fn computing_threads(self, requested: NonZeroUsize) -> NonZeroUsize {
+        if self == Self::None { NonZeroUsize::MIN } else { requested }
+    }
 }

@@ -1,8 +1,8 @@
-//! How work is spread: who computes which tile, when, on which thread.
+//! The strategy: who computes which tile, when, on which thread.
 
 use crate::image::Image;
-use crate::policy::Rule;
-use crate::tile::{Area, Tile};
+use crate::policy::{Policy, Threads};
+use crate::tile::{Rect, Tile};
 use crate::work::Work;
 use std::any::Any;
 use std::io;
@@ -12,76 +12,81 @@ use thiserror::Error;
 
 /// A way to spread work over threads.
 pub trait Strategy: Sync {
-    /// Its name on the command line and in every table: lower case, words joined by `-`.
+    /// Returns the name on the command line and in every table: lower case, words joined by `-`.
     fn name(&self) -> &'static str;
 
-    /// One line: what it decides.
+    /// Returns one line that says what the strategy decides.
     fn summary(&self) -> &'static str;
 
-    /// Where its threads are started, and so which figure contains that cost.
-    fn threads_start(&self) -> ThreadsStart;
+    /// Returns where the strategy starts its threads.
+    fn threads(&self) -> Threads;
 
-    /// How it deals out the work: what a simulation of it goes by.
-    fn rule(&self) -> Rule;
+    /// Returns what the strategy decides; a simulation of it goes by this alone.
+    fn policy(&self) -> Policy;
 
-    /// What is missing on this machine, or was when it was built, and how to get it; nothing if it
-    /// can be prepared.
+    /// Returns what is missing on this machine, or was missing when the program was built, and how
+    /// to get it; `None` if the strategy can be prepared.
     fn unavailable(&self) -> Option<&'static str> {
         None
     }
 
-    /// Makes ready to render with exactly `plan.threads` computing threads; a thread pool is built
-    /// here.
+    /// Prepares to render with exactly `plan.threads` computing threads; a pool is built here.
     ///
     /// # Errors
     ///
-    /// A pool that cannot be built; [`StrategyError::Unavailable`] if the strategy is
-    /// [unavailable](Self::unavailable).
+    /// [`StrategyError::Spawn`] if a pool cannot be built, [`StrategyError::Unavailable`] if the
+    /// strategy is [unavailable](Self::unavailable).
     fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError>;
 }
 
-/// A prepared strategy: renders as often as asked.
+/// A prepared strategy, which renders as often as asked.
 pub trait Renderer {
     /// Fills every pixel of `image` with what `work` computes for it.
     ///
     /// # Errors
     ///
-    /// Work that panicked, or a thread that could not be started. The picture is then incomplete,
-    /// and the renderer may be used again.
+    /// [`StrategyError::Panicked`] if the work panicked, [`StrategyError::Spawn`] if a thread could
+    /// not be started. The image is then incomplete, and the renderer may be used again.
     fn render(&mut self, work: &dyn Work, image: &mut Image) -> Result<(), StrategyError>;
 }
 
-/// What a strategy is prepared for.
+/// The parameters that a strategy is prepared with.
+///
+/// ```
+/// use rayweave_contract::Plan;
+/// use std::num::{NonZeroU32, NonZeroUsize};
+///
+/// let plan = Plan { threads: NonZeroUsize::new(8).unwrap(), tile: NonZeroU32::new(32).unwrap() };
+/// assert_eq!(plan.threads.get(), 8);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Plan {
-    /// The number of computing threads, whether or not the caller's is one of them. What a strategy
-    /// deals out has to give each of them something in a picture of twice as many tiles.
+    /// The number of computing threads, whether or not the caller's is one of them. A strategy has
+    /// to give each of them something to do in an image of twice as many tiles.
     pub threads: NonZeroUsize,
-    /// The side of a tile in pixels, for the strategies that deal in tiles. Each tile takes memory:
-    /// some 40 bytes, and 16 a row.
+    /// The side of a tile in pixels, for strategies that hand out tiles. Each tile takes about 40
+    /// bytes of memory, and 16 a row.
     pub tile: NonZeroU32,
 }
 
-/// Where a strategy starts its threads.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ThreadsStart {
-    /// It has none of its own: the caller's thread computes, alone, whatever the plan says.
-    Never,
-    /// While it is prepared: a pool, whose start is not part of a rendering's time.
-    Prepare,
-    /// At the start of every rendering, and so within its time.
-    Render,
-}
-
-impl ThreadsStart {
-    /// The number of threads that compute where `asked` are asked for.
-    #[must_use]
-    pub fn computing_threads(self, asked: NonZeroUsize) -> NonZeroUsize {
-        if self == Self::Never { NonZeroUsize::MIN } else { asked }
-    }
-}
-
-/// Why a strategy gave no picture.
+/// The reason why a strategy gave no image.
+///
+/// ```
+/// use rayweave_contract::{StrategyError, Tile, Work, render_tile};
+///
+/// struct Faulty;
+///
+/// impl Work for Faulty {
+///     fn render(&self, _: &mut Tile<'_>) {
+///         panic!("no value");
+///     }
+/// }
+///
+/// let mut color = [0.0; 3];
+/// let error = render_tile("loop", &Faulty, &mut Tile::pixel(3, 4, &mut color)).unwrap_err();
+/// assert!(matches!(error, StrategyError::Panicked { .. }));
+/// assert_eq!(error.to_string(), "loop: the work panicked in the tile 1x1 at (3, 4): no value");
+/// ```
 #[derive(Debug, Error)]
 pub enum StrategyError {
     /// The work panicked; the other threads stopped at their next tile.
@@ -90,11 +95,11 @@ pub enum StrategyError {
         /// The strategy's name.
         strategy: &'static str,
         /// The tile that was being computed.
-        tile: Area,
-        /// What the panic said.
+        tile: Rect,
+        /// The panic's message.
         message: String,
     },
-    /// What it is made of is not there.
+    /// The strategy needs something that is missing here.
     #[error("{strategy}: unavailable here: {reason}")]
     Unavailable {
         /// The strategy's name.
@@ -102,14 +107,14 @@ pub enum StrategyError {
         /// What is missing, and how to get it.
         reason: &'static str,
     },
-    /// A thread could not be started; those that could have ended.
+    /// A thread could not be started; those that were started have ended.
     #[error("{strategy}: cannot start {threads} threads: {source}; use fewer (--threads)")]
     Spawn {
         /// The strategy's name.
         strategy: &'static str,
-        /// The number asked for.
+        /// The number of threads asked for.
         threads: usize,
-        /// The operating system's or the library's reason.
+        /// The reason given by the operating system or the library.
         source: io::Error,
     },
 }
@@ -126,11 +131,11 @@ pub fn render_tile(
 ) -> Result<(), StrategyError> {
     // After a panic nobody reads the tile as a result: the whole rendering is an error.
     catch_unwind(AssertUnwindSafe(|| work.render(tile))).map_err(|payload| {
-        StrategyError::Panicked { strategy, tile: tile.area(), message: panic_message(&*payload) }
+        StrategyError::Panicked { strategy, tile: tile.rect(), message: panic_message(&*payload) }
     })
 }
 
-/// What a panic said, from what `catch_unwind` or `join` gave.
+/// Returns a panic's message, given the payload from `catch_unwind` or `join`.
 #[must_use]
 pub fn panic_message(payload: &(dyn Any + Send)) -> String {
     let text = payload.downcast_ref::<&str>().copied();

@@ -8,7 +8,7 @@ use std::fmt;
 
 /// A rectangle of pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Area {
+pub struct Rect {
     /// Column of its left pixels.
     pub x: u32,
     /// Row of its top pixels.
@@ -19,7 +19,7 @@ pub struct Area {
     pub height: u32,
 }
 
-impl Area {
+impl Rect {
     /// Whether pixel `(x, y)` is in it.
     #[must_use]
     pub fn contains(&self, x: u32, y: u32) -> bool {
@@ -28,7 +28,7 @@ impl Area {
     }
 }
 
-impl fmt::Display for Area {
+impl fmt::Display for Rect {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}x{} at ({}, {})", self.width, self.height, self.x, self.y)
     }
@@ -37,7 +37,7 @@ impl fmt::Display for Area {
 /// A rectangle of the picture and the sole right to write it.
 #[derive(Debug)]
 pub struct Tile<'a> {
-    area: Area,
+    rect: Rect,
     rows: Rows<'a>,
 }
 
@@ -59,8 +59,8 @@ impl<'a> Tile<'a> {
     /// as there are colours, 65,535 at the most in a picture that a scene may ask for.
     #[must_use]
     pub fn row(x: u32, y: u32, colors: &'a mut [Rgb]) -> Self {
-        let area = Area { x, y, width: colors.len() as u32, height: 1 };
-        Self { area, rows: Rows::One(colors) }
+        let rect = Rect { x, y, width: colors.len() as u32, height: 1 };
+        Self { rect, rows: Rows::One(colors) }
     }
 
     /// The tile of whole rows of a picture from row `y` down, wherever their colours are kept: row
@@ -87,20 +87,20 @@ impl<'a> Tile<'a> {
     ) -> Self {
         let height = rows.len();
         let first = rows.next().unwrap_or_default();
-        let area = Area { x, y, width: first.len() as u32, height: height as u32 };
+        let rect = Rect { x, y, width: first.len() as u32, height: height as u32 };
         if height == 1 {
-            return Self { area, rows: Rows::One(first) };
+            return Self { rect, rows: Rows::One(first) };
         }
         let mut many = Vec::with_capacity(height);
         many.push(first);
         many.extend(rows);
-        Self { area, rows: Rows::Many(many) }
+        Self { rect, rows: Rows::Many(many) }
     }
 
     /// Which pixels of the picture these are.
     #[must_use]
-    pub fn area(&self) -> Area {
-        self.area
+    pub fn rect(&self) -> Rect {
+        self.rect
     }
 
     /// The pixels of row `y`, counted from the tile's top.
@@ -122,6 +122,6 @@ impl<'a> Tile<'a> {
             Rows::One(row) => std::slice::from_mut(row),
             Rows::Many(rows) => rows.as_mut_slice(),
         };
-        (self.area.y..).zip(rows.iter_mut().map(|row| &mut **row))
+        (self.rect.y..).zip(rows.iter_mut().map(|row| &mut **row))
     }
 }

@@ -1,13 +1,28 @@
-//! What is computed: a pure function that fills any tile of a picture.
+//! The work: a pure function that fills any tile of an image.
 
 use crate::tile::Tile;
 
 /// A pure function from a pixel's position to its colour, evaluated a tile at a time.
 ///
-/// The contract that every strategy and every proof rests on: a pixel gets the same bits
-/// whichever tile it is computed in, on whichever thread, in whichever order, and however often.
-/// So a strategy is free in all of these, and a wrapper that watches (who computed what, how far
-/// it is, what fails) is a `Work` around a `Work`.
+/// Every strategy and every proof rests on this: a pixel gets the same bits whichever tile it is
+/// computed in, on whichever thread, in whichever order, and however often. So a strategy is free in
+/// all of these, and an observer (a recorder, a progress bar, fault injection) is a `Work` around a
+/// `Work`.
+///
+/// ```
+/// use rayweave_contract::{Tile, Work};
+/// use std::sync::atomic::{AtomicU32, Ordering};
+///
+/// /// Counts the tiles that another work renders.
+/// struct Counted<W>(W, AtomicU32);
+///
+/// impl<W: Work> Work for Counted<W> {
+///     fn render(&self, tile: &mut Tile<'_>) {
+///         self.1.fetch_add(1, Ordering::Relaxed);
+///         self.0.render(tile);
+///     }
+/// }
+/// ```
 pub trait Work: Sync {
     /// Writes every pixel of `tile`.
     fn render(&self, tile: &mut Tile<'_>);

@@ -97,7 +97,7 @@ impl<'a, S: Scalar> LatticeSums<'a, S> {
             }
         }
         let last = self.weights.len() - 1;
-        let height = tile.area().height as usize;
+        let height = tile.rect().height as usize;
         let touched = lattice_row.saturating_sub(last).div_ceil(self.density)
             ..height.min(lattice_row / self.density + 1);
         for y in touched {

@@ -11,7 +11,7 @@ use crate::sample_count::lattice_points;
 use crate::samples::{Colors, Places, half_steps};
 use crate::scene::{Scene, SceneError};
 use crate::trace::World;
-use rayweave_contract::{Area, Tile, Work};
+use rayweave_contract::{Rect, Tile, Work};
 use std::fmt;
 use std::marker::PhantomData;
 use std::ops::Range;
@@ -114,18 +114,18 @@ impl<L: Lane, F: Family> Tracer<L, F> {
     }
 
     /// The place of the first lattice point of a tile, a pixel before the centre of its first one.
-    fn corner(&self, area: Area) -> (L::Scalar, L::Scalar) {
+    fn corner(&self, rect: Rect) -> (L::Scalar, L::Scalar) {
         let back = half_steps(-i64::from(self.filter.density()));
-        (self.centre(area.x, self.width) + back, self.centre(area.y, self.height) + back)
+        (self.centre(rect.x, self.width) + back, self.centre(rect.y, self.height) + back)
     }
 
     /// Every pixel with samples of its own.
     fn render_alone(&self, tile: &mut Tile<'_>) {
-        let area = tile.area();
+        let rect = tile.rect();
         let rights: Vec<L::Scalar> =
-            (0..area.width).map(|x| self.centre(area.x + x, self.width)).collect();
+            (0..rect.width).map(|x| self.centre(rect.x + x, self.width)).collect();
         let downs: Vec<L::Scalar> =
-            (0..area.height).map(|y| self.centre(area.y + y, self.height)).collect();
+            (0..rect.height).map(|y| self.centre(rect.y + y, self.height)).collect();
         let samples = self.filter.places();
         // The widest block of which a row's samples fit into a batch; a pixel if not even these do.
         let side = (BATCH / samples.len()).clamp(1, BLOCK);
@@ -155,12 +155,12 @@ impl<L: Lane, F: Family> Tracer<L, F> {
 
     /// The lattice over the tile and around it, each point traced once.
     fn render_shared(&self, tile: &mut Tile<'_>, weights: &[L::Scalar]) {
-        let (area, density) = (tile.area(), self.filter.density());
+        let (rect, density) = (tile.rect(), self.filter.density());
         let [columns, rows] =
-            [area.width, area.height].map(|pixels| lattice_points(pixels, density) as usize);
-        let (left, top) = self.corner(area);
+            [rect.width, rect.height].map(|pixels| lattice_points(pixels, density) as usize);
+        let (left, top) = self.corner(rect);
         let (mut places, mut colors) = (Places::default(), Colors::default());
-        let mut sums = LatticeSums::new(weights, density as usize, area.width as usize);
+        let mut sums = LatticeSums::new(weights, density as usize, rect.width as usize);
         let mut height = 0;
         for first_row in (0..rows).step_by(BLOCK) {
             // All strips of a tile have the same places but the last, which may be lower.
@@ -186,12 +186,12 @@ impl<L: Lane, F: Family> Tracer<L, F> {
 
     /// The lattice over the tile and around it; points that need no ray are interpolated.
     fn render_adaptive(&self, tile: &mut Tile<'_>, weights: &[L::Scalar]) {
-        let (area, density) = (tile.area(), self.filter.density());
-        let (left, top) = self.corner(area);
+        let (rect, density) = (tile.rect(), self.filter.density());
+        let (left, top) = self.corner(rect);
         let (mut places, mut colors) = (Places::default(), Colors::default());
-        let mut sums = LatticeSums::new(weights, density as usize, area.width as usize);
-        let mut bands = Bands::new(density as usize, area.width as usize);
-        for centres in 0..area.height + 2 {
+        let mut sums = LatticeSums::new(weights, density as usize, rect.width as usize);
+        let mut bands = Bands::new(density as usize, rect.width as usize);
+        for centres in 0..rect.height + 2 {
             // The band ends at lattice row `last`; of the first one there is this row only.
             let last = i64::from(centres * density);
             bands.place_centres(&mut places);

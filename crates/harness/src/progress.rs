@@ -65,7 +65,7 @@ impl<'a, W: Work + ?Sized> Watched<'a, W> {
 impl<W: Work + ?Sized> Work for Watched<'_, W> {
     fn render(&self, tile: &mut Tile<'_>) {
         self.work.render(tile);
-        let area = tile.area();
-        self.bar.inc(u64::from(area.width) * u64::from(area.height));
+        let rect = tile.rect();
+        self.bar.inc(u64::from(rect.width) * u64::from(rect.height));
     }
 }

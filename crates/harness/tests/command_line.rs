@@ -266,7 +266,7 @@ fn threads_that_cannot_be_started_are_an_error_that_names_the_strategy() {
     };
     let parallel = rayweave_registry::available()
         .into_iter()
-        .filter(|strategy| strategy.threads_start() != rayweave_contract::ThreadsStart::Never);
+        .filter(|strategy| strategy.threads() != rayweave_contract::Threads::None);
     for strategy in parallel {
         let name = strategy.name();
         // A dozen of them have enough to do not to end before the next is started.

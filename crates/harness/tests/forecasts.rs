@@ -3,7 +3,7 @@
 mod program;
 
 use program::{files_in, folder, json, rayweave, scene};
-use rayweave_contract::ThreadsStart;
+use rayweave_contract::Threads;
 use serde_json::Value;
 use std::fs;
 
@@ -103,8 +103,7 @@ fn predict_takes_every_strategy_that_starts_threads() {
     )
     .expect_success();
     let object = json(&folder.path().join("a.json"));
-    let parallel =
-        rayweave_registry::STRATEGIES.iter().filter(|s| s.threads_start() != ThreadsStart::Never);
+    let parallel = rayweave_registry::STRATEGIES.iter().filter(|s| s.threads() != Threads::None);
     let unavailable = object["unavailable"].as_array().expect("a list").len();
     assert_eq!(results(&object).len(), 2 * (parallel.count() - unavailable));
     assert!(results(&object).iter().all(|row| is_positive(&row["predicted"])));

@@ -5,7 +5,7 @@ use crate::overhead::{of_pixels, step};
 use crate::sheet::{Columns, Sheet};
 use crate::statistics::lower_quartile;
 use crate::synthetic::Synthetic;
-use rayweave_contract::{Dealing, Delivery, Piece, Renderer, Rule, Strategy};
+use rayweave_contract::{Granularity, Output, Policy, Renderer, Scheduling, Strategy};
 use rayweave_predict::{Access, Overheads, simulate};
 use std::num::NonZeroUsize;
 
@@ -40,7 +40,7 @@ pub fn calibrate(
         }
     }
     let of = |(strategy, rounds): (&&dyn Strategy, &Vec<Times>)| {
-        overheads(strategy.rule(), threads.get(), &Times::least_disturbed(rounds))
+        overheads(strategy.policy(), threads.get(), &Times::least_disturbed(rounds))
     };
     Ok(strategies.iter().zip(&rounds).map(of).collect())
 }
@@ -125,22 +125,27 @@ impl Times {
 /// From outside nothing tells what of a piece's dispatch one thread at a time does. Where all
 /// threads share something, that much of it is taken for it as did not become faster by more
 /// threads, and what became slower is the handover.
-fn overheads(rule: Rule, threads: usize, times: &Times) -> Overheads {
+fn overheads(policy: Policy, threads: usize, times: &Times) -> Overheads {
     // What comes out below 0 is noise.
     let dispatch = |columns| Columns::slope(columns).max(0.0);
-    let (one, all) = match rule.piece {
-        Piece::Band => (0.0, 0.0),
+    let (one, all) = match policy.granularity {
+        Granularity::Band => (0.0, 0.0),
         _ => (dispatch(times.columns_one), dispatch(times.columns_all)),
     };
     let others = threads.saturating_sub(1).max(1) as f64;
-    let steals = threads > 1 && matches!(rule.dealing, Dealing::Stealing | Dealing::Halving);
+    let steals = threads > 1
+        && matches!(policy.scheduling, Scheduling::WorkStealing | Scheduling::RecursiveSplit);
     let overheads = Overheads {
         start: times.single,
         // Whoever begins later ends later.
         next_start: (without_pieces(times.together) - without_pieces(times.alone)).max(0.0)
             / others,
         piece: one,
-        steal: if steals { price_of_theft(rule, threads, times.late - times.spread) } else { 0.0 },
+        steal: if steals {
+            price_of_theft(policy, threads, times.late - times.spread)
+        } else {
+            0.0
+        },
         ..Overheads::default()
     };
     let access = |pieces: f64| Access {
@@ -148,14 +153,14 @@ fn overheads(rule: Rule, threads: usize, times: &Times) -> Overheads {
         handover: (all - one).max(0.0) * pieces,
     };
     let piece = (one - all).max(0.0);
-    match (rule.delivery, rule.dealing) {
-        (Delivery::Locked | Delivery::Sent, _) => {
+    match (policy.output, policy.scheduling) {
+        (Output::Mutex | Output::Channel, _) => {
             Overheads { deliver: access(1.0), piece, ..overheads }
         }
-        (Delivery::InPlace, Dealing::Shared { chunk }) => {
+        (Output::InPlace, Scheduling::Dynamic { chunk }) => {
             Overheads { take: access(chunk as f64), piece, ..overheads }
         }
-        (Delivery::InPlace, _) => overheads,
+        (Output::InPlace, _) => overheads,
     }
 }
 
@@ -168,19 +173,19 @@ fn without_pieces([single, twice]: [f64; 2]) -> f64 {
 /// What a theft costs, by how much longer the late load takes than the one that is spread: less
 /// what it would take longer if thefts cost nothing, and by how much each nanosecond of a theft
 /// delays the end. Both are simulated.
-fn price_of_theft(rule: Rule, threads: usize, longer: f64) -> f64 {
-    let late = |steal| simulated_late(rule, threads, steal);
+fn price_of_theft(policy: Policy, threads: usize, longer: f64) -> f64 {
+    let late = |steal| simulated_late(policy, threads, steal);
     (longer - late(0.0)).max(0.0) / (late(1.0) - late(0.0)).max(1.0)
 }
 
 /// How much longer than the load that is spread the late one takes where a theft costs `steal`.
-fn simulated_late(rule: Rule, threads: usize, steal: f64) -> f64 {
+fn simulated_late(policy: Policy, threads: usize, steal: f64) -> f64 {
     let (pieces, ns) = STOLEN;
     let late: Vec<f64> =
         (0..pieces).map(|piece| if piece < pieces / 2 { 0.0 } else { ns }).collect();
     let spread = vec![ns / 2.0; pieces as usize];
     let time = |pieces: &[f64], steal| {
-        simulate(rule, threads, pieces, &Overheads { steal, ..Overheads::default() }).time
+        simulate(policy, threads, pieces, &Overheads { steal, ..Overheads::default() }).time
     };
     time(&late, steal) - time(&spread, 0.0)
 }
@@ -204,26 +209,32 @@ mod tests {
         }
     }
 
-    fn of(dealing: Dealing, delivery: Delivery, all: f64) -> Overheads {
-        overheads(Rule { piece: Piece::Row, dealing, delivery }, 3, &times(all))
+    fn of(scheduling: Scheduling, output: Output, all: f64) -> Overheads {
+        overheads(Policy { granularity: Granularity::Row, scheduling, output }, 3, &times(all))
     }
 
     /// Catches a dispatch that is counted twice, or in the wrong place.
     #[test]
     fn what_is_shared_takes_what_threads_do_not_speed_up() {
         let plain = Overheads { start: 7.0, next_start: 3.0, piece: 10.0, ..Overheads::default() };
-        assert_eq!(of(Dealing::Equal, Delivery::InPlace, 14.0), plain);
-        let steals =
-            Rule { piece: Piece::Row, dealing: Dealing::Stealing, delivery: Delivery::InPlace };
+        assert_eq!(of(Scheduling::Static, Output::InPlace, 14.0), plain);
+        let steals = Policy {
+            granularity: Granularity::Row,
+            scheduling: Scheduling::WorkStealing,
+            output: Output::InPlace,
+        };
         let steal = price_of_theft(steals, 3, 3.0);
-        assert_eq!(of(Dealing::Stealing, Delivery::InPlace, 6.0), Overheads { steal, ..plain });
-        let take = Access { hold: 20.0, handover: 8.0 };
-        let shared = Dealing::Shared { chunk: 2 };
-        assert_eq!(of(shared, Delivery::InPlace, 14.0), Overheads { piece: 0.0, take, ..plain });
-        let deliver = Access { hold: 6.0, handover: 0.0 };
-        assert_eq!(of(shared, Delivery::Locked, 6.0), Overheads { piece: 4.0, deliver, ..plain });
         assert_eq!(
-            of(Dealing::Equal, Delivery::Sent, 6.0),
+            of(Scheduling::WorkStealing, Output::InPlace, 6.0),
+            Overheads { steal, ..plain }
+        );
+        let take = Access { hold: 20.0, handover: 8.0 };
+        let shared = Scheduling::Dynamic { chunk: 2 };
+        assert_eq!(of(shared, Output::InPlace, 14.0), Overheads { piece: 0.0, take, ..plain });
+        let deliver = Access { hold: 6.0, handover: 0.0 };
+        assert_eq!(of(shared, Output::Mutex, 6.0), Overheads { piece: 4.0, deliver, ..plain });
+        assert_eq!(
+            of(Scheduling::Static, Output::Channel, 6.0),
             Overheads { piece: 4.0, deliver, ..plain }
         );
     }
@@ -232,23 +243,33 @@ mod tests {
     /// and one of pieces where there is one a thread.
     #[test]
     fn bands_have_no_dispatch_and_one_thread_nobody_to_steal_from() {
-        let rule = |piece| Rule { piece, dealing: Dealing::Halving, delivery: Delivery::InPlace };
+        let rule = |piece| Policy {
+            granularity: piece,
+            scheduling: Scheduling::RecursiveSplit,
+            output: Output::InPlace,
+        };
         let faster = Times { together: [150.0, 300.0], ..times(10.0) };
         let expected = Overheads { start: 7.0, piece: 10.0, ..Overheads::default() };
-        assert_eq!(overheads(rule(Piece::Pixel), 1, &faster), expected);
-        assert_eq!(overheads(rule(Piece::Band), 1, &faster), Overheads { piece: 0.0, ..expected });
+        assert_eq!(overheads(rule(Granularity::Pixel), 1, &faster), expected);
+        assert_eq!(
+            overheads(rule(Granularity::Band), 1, &faster),
+            Overheads { piece: 0.0, ..expected }
+        );
     }
 
     /// Catches pieces that cannot be dealt out evenly taken for the price of a theft, and several
     /// thefts for one.
     #[test]
     fn what_a_theft_costs_is_found_again() {
-        for (dealing, threads) in
-            [(Dealing::Stealing, 2), (Dealing::Stealing, 5), (Dealing::Halving, 2)]
-        {
-            let rule = Rule { piece: Piece::Tile, dealing, delivery: Delivery::InPlace };
+        for (scheduling, threads) in [
+            (Scheduling::WorkStealing, 2),
+            (Scheduling::WorkStealing, 5),
+            (Scheduling::RecursiveSplit, 2),
+        ] {
+            let rule =
+                Policy { granularity: Granularity::Tile, scheduling, output: Output::InPlace };
             let found = price_of_theft(rule, threads, simulated_late(rule, threads, 100.0));
-            assert!((found - 100.0).abs() < 1.0, "{dealing:?}, {threads} threads: {found}");
+            assert!((found - 100.0).abs() < 1.0, "{scheduling:?}, {threads} threads: {found}");
         }
     }
 

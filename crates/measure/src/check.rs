@@ -11,7 +11,7 @@ use crate::computing_threads::Rendezvous;
 use crate::finding::{Difference, Fault, Finding, Picture};
 use crate::poison;
 use crate::recorder::{Record, Recorder};
-use rayweave_contract::{Image, ImageError, Plan, Renderer, Rgb, Strategy, ThreadsStart, Work};
+use rayweave_contract::{Image, ImageError, Plan, Renderer, Rgb, Strategy, Threads, Work};
 use std::fmt;
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::time::Duration;
@@ -162,9 +162,9 @@ impl<'a> Check<'a> {
 
     /// The numbers of threads that make a difference to `strategy`.
     fn threads_of(&self, strategy: &dyn Strategy) -> &'a [NonZeroUsize] {
-        match strategy.threads_start() {
-            ThreadsStart::Never => &[NonZeroUsize::MIN],
-            ThreadsStart::Prepare | ThreadsStart::Render => self.threads,
+        match strategy.threads() {
+            Threads::None => &[NonZeroUsize::MIN],
+            Threads::Pool | Threads::PerRender => self.threads,
         }
     }
 

@@ -170,13 +170,13 @@ impl Losses {
 mod tests {
     use super::*;
     use crate::timeline::Piece;
-    use rayweave_contract::Area;
+    use rayweave_contract::Rect;
 
     const FREE: Cost = Cost { inside_ns: 0.0, outside_ns: 0.0 };
 
     fn timeline(wall_ns: u64, lanes: &[&[(u64, u64)]]) -> Timeline {
         let piece = |&(begin_ns, end_ns): &(u64, u64)| Piece {
-            area: Area { x: 0, y: 0, width: 1, height: 1 },
+            rect: Rect { x: 0, y: 0, width: 1, height: 1 },
             begin_ns,
             end_ns,
         };

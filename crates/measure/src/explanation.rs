@@ -168,7 +168,7 @@ impl Experiment<'_> {
         ];
         let mut places = Vec::with_capacity(strategies.len());
         for &strategy in strategies {
-            let threads = strategy.threads_start().computing_threads(threads);
+            let threads = strategy.threads().computing_threads(threads);
             let mut add = |threads, recording| {
                 series.push(Series::new(strategy, threads, recording));
                 series.len() - 1

@@ -167,10 +167,10 @@ impl fmt::Display for Color {
 mod tests {
     use super::*;
     use crate::recorder::Thread;
-    use rayweave_contract::Area;
+    use rayweave_contract::Rect;
 
     fn computation() -> Computation {
-        let tile = Area { x: 8, y: 16, width: 8, height: 4 };
+        let tile = Rect { x: 8, y: 16, width: 8, height: 4 };
         Computation { tile, thread: Thread { index: 1, name: Some("tile-queue 0".to_owned()) } }
     }
 

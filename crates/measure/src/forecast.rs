@@ -19,7 +19,7 @@ use crate::piece_costs::{Cut, OneByOne, PieceCosts};
 use crate::schedule::Protocol;
 use crate::statistics::Interval;
 use crate::stopwatch::Stopwatch;
-use rayweave_contract::{ImageError, Piece, Strategy, ThreadsStart, Work};
+use rayweave_contract::{Granularity, ImageError, Strategy, Threads, Work};
 use rayweave_predict::fit::{amdahl, usl};
 use rayweave_predict::{Law, Overheads, simulate};
 use std::num::{NonZeroU32, NonZeroUsize};
@@ -133,8 +133,7 @@ impl Question<'_> {
     pub fn answer(&self, mut progress: impl FnMut(Stage, f64)) -> Result<Forecast, ForecastError> {
         let mut unavailable = Vec::new();
         let mut strategies = Vec::new();
-        for &strategy in self.strategies.iter().filter(|s| s.threads_start() != ThreadsStart::Never)
-        {
+        for &strategy in self.strategies.iter().filter(|s| s.threads() != Threads::None) {
             match of_pixels(strategy, NonZeroUsize::MIN) {
                 Ok(_) => strategies.push(strategy),
                 Err(reason) => unavailable.push(reason),
@@ -154,7 +153,8 @@ impl Question<'_> {
         let several: Vec<NonZeroUsize> =
             together.copied().filter(|threads| threads.get() > 1).collect();
         let independent = Independent::default();
-        let kinds: Vec<Piece> = strategies.iter().map(|strategy| strategy.rule().piece).collect();
+        let kinds: Vec<Granularity> =
+            strategies.iter().map(|strategy| strategy.policy().granularity).collect();
         let pieces: Vec<OneByOne> =
             Cut::for_pieces(&kinds).into_iter().map(OneByOne::new).collect();
 
@@ -191,11 +191,12 @@ impl Question<'_> {
             pieces.iter().filter_map(|pieces| Some((pieces, speedup(pieces)?))).collect();
         let costs = PieceCosts::new(&measured, reference);
         let curve = |(strategy, overheads): (&&dyn Strategy, &Overheads)| {
-            let rule = strategy.rule();
+            let policy = strategy.policy();
             let time = |threads: usize| {
                 let slowdown = slowdown(&slowdowns, threads);
-                let pieces = costs.of(rule.piece, threads).into_iter().map(|cost| cost * slowdown);
-                simulate(rule, threads, &pieces.collect::<Vec<_>>(), overheads).time
+                let pieces =
+                    costs.of(policy.granularity, threads).into_iter().map(|cost| cost * slowdown);
+                simulate(policy, threads, &pieces.collect::<Vec<_>>(), overheads).time
             };
             let times: Vec<(usize, f64)> =
                 self.threads.iter().map(|threads| (threads.get(), time(threads.get()))).collect();
@@ -219,7 +220,7 @@ impl Question<'_> {
         let known = strategies
             .iter()
             .zip(&overheads)
-            .filter(|(strategy, _)| costs.know(strategy.rule().piece));
+            .filter(|(strategy, _)| costs.know(strategy.policy().granularity));
         let curves = known.map(curve).collect();
         Ok(Forecast { curves, unavailable, slowdowns, comparison })
     }

@@ -3,8 +3,8 @@
 use crate::statistics::{Interval, ratio_interval};
 use crate::stopwatch::nanoseconds;
 use rayweave_contract::{
-    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart,
-    Work, panic_message, render_tile,
+    Granularity, Image, Output, Plan, Policy, Renderer, Scheduling, Strategy, StrategyError,
+    Threads, Work, panic_message, render_tile,
 };
 use std::collections::BTreeMap;
 use std::io;
@@ -56,12 +56,16 @@ impl Strategy for Independent {
         "each thread draws the whole picture: what cores cost each other"
     }
 
-    fn threads_start(&self) -> ThreadsStart {
-        ThreadsStart::Render
+    fn threads(&self) -> Threads {
+        Threads::PerRender
     }
 
-    fn rule(&self) -> Rule {
-        Rule { piece: Piece::Tile, dealing: Dealing::Equal, delivery: Delivery::InPlace }
+    fn policy(&self) -> Policy {
+        Policy {
+            granularity: Granularity::Tile,
+            scheduling: Scheduling::Static,
+            output: Output::InPlace,
+        }
     }
 
     fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {

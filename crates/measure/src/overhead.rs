@@ -12,7 +12,7 @@ use crate::sheet::{Columns, Sheet};
 use crate::statistics::{Interval, median, median_interval};
 use crate::synthetic;
 use curve::{break_even, metg};
-use rayweave_contract::{Piece, Plan, Renderer, Strategy};
+use rayweave_contract::{Granularity, Plan, Renderer, Strategy};
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::time::Instant;
 use thiserror::Error;
@@ -68,7 +68,7 @@ pub struct Row {
     /// Its name.
     pub strategy: &'static str,
     /// What it computes at once.
-    pub piece: Piece,
+    pub granularity: Granularity,
     /// The number of computing threads.
     pub threads: usize,
     /// Or why there are none.
@@ -161,7 +161,7 @@ impl Overhead<'_> {
             reference.map_err(|failure| OverheadError::Reference(failure.to_string()))?;
         let rows = samples.zip(self.strategies).map(|(samples, &strategy)| Row {
             strategy: strategy.name(),
-            piece: strategy.rule().piece,
+            granularity: strategy.policy().granularity,
             threads: self.threads_of(strategy).get(),
             figures: samples
                 .map(|samples| self.figures(strategy, &samples, &reference, sheets.step_ns)),
@@ -170,7 +170,7 @@ impl Overhead<'_> {
     }
 
     fn threads_of(&self, strategy: &dyn Strategy) -> NonZeroUsize {
-        strategy.threads_start().computing_threads(self.threads)
+        strategy.threads().computing_threads(self.threads)
     }
 
     /// Everything once, for one strategy.
@@ -209,7 +209,7 @@ impl Overhead<'_> {
         reference: &Samples,
         step_ns: f64,
     ) -> Figures {
-        let is_band = strategy.rule().piece == Piece::Band;
+        let is_band = strategy.policy().granularity == Granularity::Band;
         let threads = self.threads_of(strategy).get();
         let interval = |of: fn(&Round) -> f64| {
             let none = Interval { median: 0.0, low: 0.0, high: 0.0 };

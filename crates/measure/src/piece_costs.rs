@@ -2,8 +2,8 @@
 
 use crate::statistics::lower_quartile;
 use rayweave_contract::{
-    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart,
-    Tile, Work, render_tile,
+    Granularity, Image, Output, Plan, Policy, Renderer, Scheduling, Strategy, StrategyError,
+    Threads, Tile, Work, render_tile,
 };
 use std::num::NonZeroU32;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -29,13 +29,13 @@ pub enum Cut {
 impl Cut {
     /// Those that the costs of `pieces` are found from.
     #[must_use]
-    pub fn for_pieces(pieces: &[Piece]) -> Vec<Self> {
+    pub fn for_pieces(pieces: &[Granularity]) -> Vec<Self> {
         let is_needed = |cut: &Self| {
             pieces.iter().any(|piece| match piece {
-                Piece::Pixel => *cut == Self::Pixels,
-                Piece::Row => *cut == Self::Rows,
-                Piece::Tile => *cut == Self::Tiles,
-                Piece::Band => matches!(cut, Self::Rows | Self::Whole),
+                Granularity::Pixel => *cut == Self::Pixels,
+                Granularity::Row => *cut == Self::Rows,
+                Granularity::Tile => *cut == Self::Tiles,
+                Granularity::Band => matches!(cut, Self::Rows | Self::Whole),
             })
         };
         [Self::Pixels, Self::Rows, Self::Tiles, Self::Whole].into_iter().filter(is_needed).collect()
@@ -100,18 +100,18 @@ impl Strategy for OneByOne {
         "one thread draws and times each piece"
     }
 
-    fn threads_start(&self) -> ThreadsStart {
-        ThreadsStart::Never
+    fn threads(&self) -> Threads {
+        Threads::None
     }
 
-    fn rule(&self) -> Rule {
+    fn policy(&self) -> Policy {
         let piece = match self.cut {
-            Cut::Pixels => Piece::Pixel,
-            Cut::Rows => Piece::Row,
-            Cut::Tiles => Piece::Tile,
-            Cut::Whole => Piece::Band,
+            Cut::Pixels => Granularity::Pixel,
+            Cut::Rows => Granularity::Row,
+            Cut::Tiles => Granularity::Tile,
+            Cut::Whole => Granularity::Band,
         };
-        Rule { piece, dealing: Dealing::Equal, delivery: Delivery::InPlace }
+        Policy { granularity: piece, scheduling: Scheduling::Static, output: Output::InPlace }
     }
 
     fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
@@ -218,12 +218,12 @@ impl PieceCosts {
 
     /// Whether what a strategy needs that deals in such pieces was measured.
     #[must_use]
-    pub fn know(&self, piece: Piece) -> bool {
+    pub fn know(&self, piece: Granularity) -> bool {
         match piece {
-            Piece::Pixel => !self.pixels.is_empty(),
-            Piece::Row => !self.rows.is_empty(),
-            Piece::Tile => !self.tiles.is_empty(),
-            Piece::Band => !self.rows.is_empty() && self.whole > 0.0,
+            Granularity::Pixel => !self.pixels.is_empty(),
+            Granularity::Row => !self.rows.is_empty(),
+            Granularity::Tile => !self.tiles.is_empty(),
+            Granularity::Band => !self.rows.is_empty() && self.whole > 0.0,
         }
     }
 
@@ -233,12 +233,12 @@ impl PieceCosts {
     /// costs a share of itself, and the band's first row the rest too; the share is the one that is
     /// right for the whole picture.
     #[must_use]
-    pub fn of(&self, piece: Piece, threads: usize) -> Vec<f64> {
+    pub fn of(&self, piece: Granularity, threads: usize) -> Vec<f64> {
         match piece {
-            Piece::Pixel => self.pixels.clone(),
-            Piece::Row => self.rows.clone(),
-            Piece::Tile => self.tiles.clone(),
-            Piece::Band => {
+            Granularity::Pixel => self.pixels.clone(),
+            Granularity::Row => self.rows.clone(),
+            Granularity::Tile => self.tiles.clone(),
+            Granularity::Band => {
                 let first = self.rows.first().copied().unwrap_or(0.0);
                 let others = self.rows.iter().sum::<f64>() - first;
                 let share = if others > 0.0 {
@@ -300,12 +300,12 @@ mod tests {
 
     #[test]
     fn only_what_is_asked_for_is_cut() {
-        assert_eq!(Cut::for_pieces(&[Piece::Tile, Piece::Tile]), [Cut::Tiles]);
+        assert_eq!(Cut::for_pieces(&[Granularity::Tile, Granularity::Tile]), [Cut::Tiles]);
         assert_eq!(
-            Cut::for_pieces(&[Piece::Band, Piece::Pixel]),
+            Cut::for_pieces(&[Granularity::Band, Granularity::Pixel]),
             [Cut::Pixels, Cut::Rows, Cut::Whole]
         );
-        assert_eq!(Cut::for_pieces(&[Piece::Row]), [Cut::Rows]);
+        assert_eq!(Cut::for_pieces(&[Granularity::Row]), [Cut::Rows]);
     }
 
     /// Catches bands that are put together from their rows alone.
@@ -313,23 +313,24 @@ mod tests {
     fn what_was_not_measured_is_not_known() {
         let rows = PieceCosts { rows: vec![10.0; 4], ..PieceCosts::default() };
         assert_eq!(
-            [Piece::Pixel, Piece::Row, Piece::Tile, Piece::Band].map(|piece| rows.know(piece)),
+            [Granularity::Pixel, Granularity::Row, Granularity::Tile, Granularity::Band]
+                .map(|piece| rows.know(piece)),
             [false, true, false, false]
         );
-        assert!(PieceCosts { whole: 28.0, ..rows }.know(Piece::Band));
+        assert!(PieceCosts { whole: 28.0, ..rows }.know(Granularity::Band));
     }
 
     /// Rows of 10 each alone, but 28 for all four together: what follows a row costs 6.
     #[test]
     fn bands_are_cheaper_than_their_rows() {
         let costs = PieceCosts { rows: vec![10.0; 4], whole: 28.0, ..PieceCosts::default() };
-        assert_eq!(costs.of(Piece::Band, 1), [28.0]);
-        assert_eq!(costs.of(Piece::Band, 2), [16.0, 16.0]);
-        assert_eq!(costs.of(Piece::Band, 3), [10.0, 10.0, 16.0]);
+        assert_eq!(costs.of(Granularity::Band, 1), [28.0]);
+        assert_eq!(costs.of(Granularity::Band, 2), [16.0, 16.0]);
+        assert_eq!(costs.of(Granularity::Band, 3), [10.0, 10.0, 16.0]);
         // More threads than rows: some have nothing.
-        assert_eq!(costs.of(Piece::Band, 6), [0.0, 10.0, 10.0, 0.0, 10.0, 10.0]);
+        assert_eq!(costs.of(Granularity::Band, 6), [0.0, 10.0, 10.0, 0.0, 10.0, 10.0]);
         let slower = PieceCosts { whole: 99.0, ..costs };
-        assert_eq!(slower.of(Piece::Band, 1), [40.0], "no row is dearer in company");
+        assert_eq!(slower.of(Granularity::Band, 1), [40.0], "no row is dearer in company");
     }
 
     /// The least are 3 and 4.

@@ -1,6 +1,6 @@
 //! Who computed what, and how much: a work around a work.
 
-use rayweave_contract::{Area, Tile, Work};
+use rayweave_contract::{Rect, Tile, Work};
 use std::fmt;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -17,7 +17,7 @@ pub struct Recorder<'a> {
 #[derive(Debug, Default)]
 struct Log {
     threads: Vec<(ThreadId, Thread)>,
-    computations: Vec<(Area, usize)>,
+    computations: Vec<(Rect, usize)>,
 }
 
 /// A thread that computed.
@@ -33,7 +33,7 @@ pub struct Thread {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Computation {
     /// As the work was asked for it: a single pixel for a strategy that deals in pixels.
-    pub tile: Area,
+    pub tile: Rect,
     /// Who computed it.
     pub thread: Thread,
 }
@@ -63,7 +63,7 @@ impl Work for Recorder<'_> {
         self.work.render(tile);
         let mut log = self.log.lock().unwrap_or_else(PoisonError::into_inner);
         let thread = log.index_of_this_thread();
-        log.computations.push((tile.area(), thread));
+        log.computations.push((tile.rect(), thread));
     }
 }
 
@@ -109,13 +109,13 @@ impl Record {
         times
     }
 
-    fn computation(&self, tile: Area, thread: usize) -> Computation {
+    fn computation(&self, tile: Rect, thread: usize) -> Computation {
         Computation { tile, thread: self.log.threads[thread].1.clone() }
     }
 }
 
-/// What a tile costs, by its area; `None` if that does not tell.
-pub type Cost<'a> = dyn Fn(Area) -> Option<u64> + Sync + 'a;
+/// What a tile costs, by its rect; `None` if that does not tell.
+pub type Cost<'a> = dyn Fn(Rect) -> Option<u64> + Sync + 'a;
 
 /// Adds up what the tiles cost that the work inside completes: of any number of tiles a single sum.
 /// An addition for each tile is little, but more than nothing: not for timed runs.
@@ -144,7 +144,7 @@ impl<'a> Tally<'a> {
 impl Work for Tally<'_> {
     fn render(&self, tile: &mut Tile<'_>) {
         self.work.render(tile);
-        match (self.cost)(tile.area()) {
+        match (self.cost)(tile.rect()) {
             Some(cost) => drop(self.sum.fetch_add(cost, Ordering::Relaxed)),
             None => self.unknown.store(true, Ordering::Relaxed),
         }
@@ -212,11 +212,11 @@ mod tests {
         assert_eq!(record.of_pixel(0, 1), []);
     }
 
-    /// Catches a tile that is not counted, or counted by something other than its own area.
+    /// Catches a tile that is not counted, or counted by something other than its own rect.
     #[test]
     fn costs_of_all_threads_add_up() {
         let cost =
-            |area: Area| (area.x < 4).then(|| u64::from(100 * area.x + 10 * area.y + area.width));
+            |rect: Rect| (rect.x < 4).then(|| u64::from(100 * rect.x + 10 * rect.y + rect.width));
         let tally = Tally::new(&Black, &cost);
         tally.render(&mut Tile::pixel(3, 2, &mut [1.0; 3]));
         thread::scope(|scope| {

@@ -5,7 +5,7 @@ use crate::compare::{Entry, Executor, Rays, Rendering, Sample};
 use crate::poison;
 use crate::recorder::{Cost, Tally};
 use crate::usage::Usage;
-use rayweave_contract::{Area, Image, ImageError, Plan, Work};
+use rayweave_contract::{Image, ImageError, Plan, Rect, Work};
 use std::num::NonZeroU32;
 use std::time::{Duration, Instant};
 
@@ -113,7 +113,7 @@ impl Executor for Stopwatch<'_> {
         let tally = Tally::new(self.work, rays);
         let rendering = self.render_work(&tally, entry)?;
         let needed =
-            rays(Area { x: 0, y: 0, width: self.image.width(), height: self.image.height() });
+            rays(Rect { x: 0, y: 0, width: self.image.width(), height: self.image.height() });
         let counted = tally.finish().zip(needed);
         let rays = counted
             .map(|(primary, needed)| Rays { primary, redundant: primary.saturating_sub(needed) });
@@ -134,7 +134,8 @@ pub(crate) fn nanoseconds(duration: Duration) -> u64 {
 mod tests {
     use super::*;
     use rayweave_contract::{
-        Dealing, Delivery, Piece, Renderer, Rgb, Rule, Strategy, StrategyError, ThreadsStart, Tile,
+        Granularity, Output, Policy, Renderer, Rgb, Scheduling, Strategy, StrategyError, Threads,
+        Tile,
     };
     use std::num::NonZeroUsize;
     use std::sync::atomic::{AtomicUsize, Ordering};
@@ -166,15 +167,15 @@ mod tests {
             "works once"
         }
 
-        fn threads_start(&self) -> ThreadsStart {
-            ThreadsStart::Never
+        fn threads(&self) -> Threads {
+            Threads::None
         }
 
-        fn rule(&self) -> Rule {
-            Rule {
-                piece: Piece::Tile,
-                dealing: Dealing::Shared { chunk: 1 },
-                delivery: Delivery::InPlace,
+        fn policy(&self) -> Policy {
+            Policy {
+                granularity: Granularity::Tile,
+                scheduling: Scheduling::Dynamic { chunk: 1 },
+                output: Output::InPlace,
             }
         }
 
@@ -214,15 +215,15 @@ mod tests {
             "2 x 2 pixels at a time"
         }
 
-        fn threads_start(&self) -> ThreadsStart {
-            ThreadsStart::Never
+        fn threads(&self) -> Threads {
+            Threads::None
         }
 
-        fn rule(&self) -> Rule {
-            Rule {
-                piece: Piece::Tile,
-                dealing: Dealing::Shared { chunk: 1 },
-                delivery: Delivery::InPlace,
+        fn policy(&self) -> Policy {
+            Policy {
+                granularity: Granularity::Tile,
+                scheduling: Scheduling::Dynamic { chunk: 1 },
+                output: Output::InPlace,
             }
         }
 
@@ -244,9 +245,9 @@ mod tests {
     #[test]
     fn the_warm_up_counts_the_tiles_that_were_cut() {
         let asked = AtomicUsize::new(0);
-        let rays = |area: Area| {
+        let rays = |rect: Rect| {
             asked.fetch_add(1, Ordering::Relaxed);
-            Some(u64::from((area.width + 1) * (area.height + 1)))
+            Some(u64::from((rect.width + 1) * (rect.height + 1)))
         };
         let plan = NonZeroU32::new(100).expect("not 0");
         let entry = Entry { strategy: &ByTwos, threads: NonZeroUsize::MIN };

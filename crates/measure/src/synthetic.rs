@@ -15,7 +15,7 @@ pub fn even(steps: u32) -> Synthetic<impl Fn(u32, u32) -> u32 + Sync> {
 
 impl<Steps: Fn(u32, u32) -> u32 + Sync> Work for Synthetic<Steps> {
     fn render(&self, tile: &mut Tile<'_>) {
-        let left = tile.area().x;
+        let left = tile.rect().x;
         for (y, row) in tile.rows() {
             for (x, pixel) in (left..).zip(row) {
                 *pixel = color(x, y, (self.0)(x, y));

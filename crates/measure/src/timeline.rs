@@ -8,7 +8,7 @@ mod cost;
 
 pub use cost::Cost;
 
-use rayweave_contract::{Area, Tile, Work};
+use rayweave_contract::{Rect, Tile, Work};
 use std::cell::RefCell;
 use std::fmt;
 use std::mem;
@@ -39,7 +39,7 @@ pub struct Lane {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Piece {
     /// Which pixels.
-    pub area: Area,
+    pub rect: Rect,
     /// When the work was asked, in nanoseconds since the rendering began.
     pub begin_ns: u64,
     /// When it was done, likewise.
@@ -71,7 +71,7 @@ impl Lane {
     pub fn pixels(&self) -> u64 {
         self.pieces
             .iter()
-            .map(|piece| u64::from(piece.area.width) * u64::from(piece.area.height))
+            .map(|piece| u64::from(piece.rect.width) * u64::from(piece.rect.height))
             .sum()
     }
 }
@@ -118,7 +118,7 @@ impl<'a> TimeRecorder<'a> {
     #[must_use]
     pub fn new(work: &'a dyn Work, threads: usize, pieces: usize) -> Self {
         let untouched =
-            Piece { area: Area { x: 0, y: 0, width: 0, height: 0 }, begin_ns: 0, end_ns: 0 };
+            Piece { rect: Rect { x: 0, y: 0, width: 0, height: 0 }, begin_ns: 0, end_ns: 0 };
         let room = || {
             // Written once: the operating system hands out memory at the first touch, which takes
             // time.
@@ -180,7 +180,7 @@ impl Work for TimeRecorder<'_> {
         self.work.render(tile);
         let end = Instant::now();
         let (begin_ns, end_ns) = (self.nanoseconds(begin), self.nanoseconds(end));
-        let piece = Piece { area: tile.area(), begin_ns, end_ns };
+        let piece = Piece { rect: tile.rect(), begin_ns, end_ns };
         LATEST.with_borrow_mut(|latest| {
             let (_, lane) = match latest {
                 Some(latest) if latest.0 == self.number => latest,
@@ -236,7 +236,7 @@ mod tests {
         render(&recorder, 1);
         let timeline = recorder.finish(begin, Instant::now());
 
-        let areas = |lane: &Lane| lane.pieces.iter().map(|piece| piece.area.x).collect::<Vec<_>>();
+        let areas = |lane: &Lane| lane.pieces.iter().map(|piece| piece.rect.x).collect::<Vec<_>>();
         let [first, second] = &timeline.lanes[..] else { panic!("{timeline:?}") };
         assert_eq!((areas(first), areas(second)), (vec![0, 1], vec![10, 11, 12]));
         assert_eq!(second.name.as_deref(), Some("second"));
@@ -264,7 +264,7 @@ mod tests {
     #[test]
     fn times_of_a_lane() {
         let piece = |begin_ns, end_ns| Piece {
-            area: Area { x: 0, y: 0, width: 3, height: 2 },
+            rect: Rect { x: 0, y: 0, width: 3, height: 2 },
             begin_ns,
             end_ns,
         };

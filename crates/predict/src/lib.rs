@@ -1,12 +1,12 @@
 //! What a strategy's rule makes of more threads than here: a simulation, and the laws fitted to it.
 //!
-//! * [`simulate`]: replays the costs of pieces under a [`Rule`](rayweave_contract::Rule);
+//! * [`simulate`]: replays the costs of pieces under a [`Policy`](rayweave_contract::Policy);
 //! * [`fit`]: Amdahl's law and Gunther's, by least squares.
 //!
 //! This crate starts no thread and reads no clock: what things cost is measured elsewhere.
 
-mod dealer;
 pub mod fit;
+mod scheduler;
 pub mod simulation;
 
 pub use fit::Law;

@@ -4,8 +4,8 @@
 //! owner of the picture that pieces are sent to; whoever waits for a lock gets it in the order of
 //! asking; memory has any bandwidth.
 
-use crate::dealer::{Dealer, Source};
-use rayweave_contract::{Delivery, Rule};
+use crate::scheduler::{Scheduler, Source};
+use rayweave_contract::{Output, Policy};
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
 use std::ops::Range;
@@ -54,16 +54,16 @@ pub struct Run {
 ///
 /// Of equal times the lower thread's comes first, so that the same input gives the same result.
 #[must_use]
-pub fn simulate(rule: Rule, threads: usize, pieces: &[f64], overheads: &Overheads) -> Run {
+pub fn simulate(policy: Policy, threads: usize, pieces: &[f64], overheads: &Overheads) -> Run {
     let threads = threads.max(1);
     let mut simulation = Simulation {
-        rule,
+        policy,
         pieces,
         overheads,
-        dealer: Dealer::new(rule.dealing, threads, pieces.len()),
-        shelf: Shared::default(),
+        scheduler: Scheduler::new(policy.scheduling, threads, pieces.len()),
+        shared_queue: Shared::default(),
         picture: Shared::default(),
-        hands: vec![0..0; threads],
+        local_queues: vec![0..0; threads],
         computed: vec![0.0; threads],
         events: BinaryHeap::new(),
         idle: Vec::new(),
@@ -82,16 +82,16 @@ pub fn simulate(rule: Rule, threads: usize, pieces: &[f64], overheads: &Overhead
 }
 
 struct Simulation<'a> {
-    rule: Rule,
+    policy: Policy,
     pieces: &'a [f64],
     overheads: &'a Overheads,
-    dealer: Dealer,
+    scheduler: Scheduler,
     /// What pieces are taken from.
-    shelf: Shared,
+    shared_queue: Shared,
     /// Where they are put.
     picture: Shared,
     /// What each thread has taken, and not yet computed.
-    hands: Vec<Range<usize>>,
+    local_queues: Vec<Range<usize>>,
     computed: Vec<f64>,
     events: BinaryHeap<Reverse<Event>>,
     /// Threads that found nothing to take, and try again when something is laid out.
@@ -107,14 +107,14 @@ impl Simulation<'_> {
 
     /// A thread has nothing in hand and asks for more.
     fn take(&mut self, time: f64, thread: usize) {
-        let Some(grant) = self.dealer.next(thread) else {
+        let Some(grant) = self.scheduler.next(thread) else {
             self.end = self.end.max(time);
             self.idle.push(thread);
             return;
         };
         let begin = match grant.source {
             Source::Own => time,
-            Source::Shared => self.shelf.access(time, thread, &self.overheads.take),
+            Source::Shared => self.shared_queue.access(time, thread, &self.overheads.take),
             Source::Stolen => time + self.overheads.steal,
         };
         if grant.laid_out {
@@ -122,16 +122,16 @@ impl Simulation<'_> {
                 self.at(begin, other, Step::Take);
             }
         }
-        self.hands[thread] = grant.pieces;
+        self.local_queues[thread] = grant.pieces;
         self.compute(begin, thread);
     }
 
     /// A thread computes what it has in hand, up to its next meeting with the others.
     fn compute(&mut self, mut time: f64, thread: usize) {
-        while let Some(piece) = self.hands[thread].next() {
+        while let Some(piece) = self.local_queues[thread].next() {
             self.computed[thread] += self.pieces[piece];
             time += self.overheads.piece + self.pieces[piece];
-            if self.rule.delivery != Delivery::InPlace {
+            if self.policy.output != Output::InPlace {
                 return self.at(time, thread, Step::Deliver);
             }
         }
@@ -143,7 +143,7 @@ impl Simulation<'_> {
         let delivered = self.picture.access(time, thread, &self.overheads.deliver);
         self.end = self.end.max(delivered);
         // A piece that is sent is the owner's business.
-        let free = if self.rule.delivery == Delivery::Sent { time } else { delivered };
+        let free = if self.policy.output == Output::Channel { time } else { delivered };
         self.compute(free, thread);
     }
 }

@@ -13,7 +13,7 @@ pub use baseline::Baseline;
 pub use scenes::ScenesReport;
 pub(crate) use table::complaint;
 
-use rayweave_contract::ThreadsStart;
+use rayweave_contract::Threads;
 use rayweave_core::{Formulas, Sampling, Search};
 use rayweave_measure::{Comparison, Interval, Machine, Noise, Row};
 
@@ -151,8 +151,8 @@ fn search(search: Search) -> &'static str {
 /// The word for where a row's threads are started.
 fn threads_start(row: &Row) -> &'static str {
     match row.threads_start {
-        ThreadsStart::Never => "never",
-        ThreadsStart::Prepare => "prepare",
-        ThreadsStart::Render => "render",
+        Threads::None => "never",
+        Threads::Pool => "prepare",
+        Threads::PerRender => "render",
     }
 }

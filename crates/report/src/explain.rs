@@ -132,7 +132,7 @@ impl<'a> Thread<'a> {
             idle_ns: begin_ns + timeline.wall_ns.saturating_sub(end_ns),
             pieces: lane.pieces.len(),
             pixels: lane.pixels(),
-            primary_rays: lane.pieces.iter().map(|piece| rays(piece.area)).sum(),
+            primary_rays: lane.pieces.iter().map(|piece| rays(piece.rect)).sum(),
             long_gaps: long_gaps().count(),
             long_gaps_ns: long_gaps().sum(),
         }

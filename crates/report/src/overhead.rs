@@ -3,7 +3,7 @@
 use crate::json::{self, Ratio};
 use crate::machine::{self, Facts};
 use crate::{noise, style};
-use rayweave_contract::Piece;
+use rayweave_contract::Granularity;
 use rayweave_measure::overhead::{Figures, LARGEST_SIDE, PIXEL_NS, Row, Study, TASKS, TILE};
 use rayweave_measure::{Interval, Machine, Noise};
 use serde::Serialize;
@@ -88,7 +88,7 @@ impl Report<'_> {
 }
 
 fn cells(row: &Row) -> [String; HEADER.len()] {
-    let piece = piece(row.piece).to_owned();
+    let piece = piece(row.granularity).to_owned();
     let [one, all, metg, side, prepare, first, later] = match &row.figures {
         Err(_) => std::array::from_fn(|_| NONE.to_owned()),
         Ok(figures) => [
@@ -125,12 +125,12 @@ fn dispatch(interval: Option<Interval>) -> String {
 }
 
 /// The word for what is computed at once.
-fn piece(piece: Piece) -> &'static str {
-    match piece {
-        Piece::Pixel => "pixel",
-        Piece::Row => "row",
-        Piece::Tile => "tile",
-        Piece::Band => "band",
+fn piece(granularity: Granularity) -> &'static str {
+    match granularity {
+        Granularity::Pixel => "pixel",
+        Granularity::Row => "row",
+        Granularity::Tile => "tile",
+        Granularity::Band => "band",
     }
 }
 
@@ -170,7 +170,7 @@ impl<'a> Item<'a> {
         Self {
             strategy: row.strategy,
             threads: row.threads,
-            piece: piece(row.piece),
+            piece: piece(row.granularity),
             dispatch_one_ns: figures.ok().and_then(|figures| figures.dispatch_one).map(Ratio::from),
             dispatch_all_ns: figures.ok().and_then(|figures| figures.dispatch_all).map(Ratio::from),
             metg_ns: figures.ok().and_then(|figures| figures.metg),
@@ -200,7 +200,8 @@ mod tests {
             first: interval(120_500.0),
             later: interval(8_000.0),
         };
-        let row = |strategy, piece, figures| Row { strategy, piece, threads: 2, figures };
+        let row =
+            |strategy, piece, figures| Row { strategy, granularity: piece, threads: 2, figures };
         let bands = Figures {
             dispatch_one: None,
             dispatch_all: None,
@@ -209,9 +210,13 @@ mod tests {
             ..figures
         };
         let rows = vec![
-            row("rows", Piece::Row, Ok(figures)),
-            row("bands", Piece::Band, Ok(bands)),
-            row("none", Piece::Tile, Err(Failure::Preparing("none: unavailable here".to_owned()))),
+            row("rows", Granularity::Row, Ok(figures)),
+            row("bands", Granularity::Band, Ok(bands)),
+            row(
+                "none",
+                Granularity::Tile,
+                Err(Failure::Preparing("none: unavailable here".to_owned())),
+            ),
         ];
         Study { rows, step_ns: 2.0, rounds: 7 }
     }

@@ -2,8 +2,8 @@
 
 use crate::gradient::{Gradient, PATIENCE, Panics, threads, tile};
 use rayweave_contract::{
-    Area, Dealing, Delivery, Image, Piece, Plan, Renderer, Rgb, Rule, Strategy, StrategyError,
-    ThreadsStart, Tile, Work, render_tile,
+    Granularity, Image, Output, Plan, Policy, Rect, Renderer, Rgb, Scheduling, Strategy,
+    StrategyError, Threads, Tile, Work, render_tile,
 };
 use rayweave_measure::{Case, Check, Fault, Finding};
 use rayweave_registry::reference;
@@ -25,15 +25,15 @@ impl Strategy for Broken {
         "wrong in one way"
     }
 
-    fn threads_start(&self) -> ThreadsStart {
-        ThreadsStart::Render
+    fn threads(&self) -> Threads {
+        Threads::PerRender
     }
 
-    fn rule(&self) -> Rule {
-        Rule {
-            piece: Piece::Tile,
-            dealing: Dealing::Shared { chunk: 1 },
-            delivery: Delivery::InPlace,
+    fn policy(&self) -> Policy {
+        Policy {
+            granularity: Granularity::Tile,
+            scheduling: Scheduling::Dynamic { chunk: 1 },
+            output: Output::InPlace,
         }
     }
 
@@ -99,7 +99,7 @@ fn findings(broken: fn(Plan, &dyn Work, &mut Image) -> Result<(), StrategyError>
 }
 
 /// The tile that a pixel was computed in, and the name of the thread.
-type By = (Area, Option<String>);
+type By = (Rect, Option<String>);
 
 /// The only finding, which has to be a difference: its pixels and its first pixel, what was found
 /// there, in which tile and by whom it was computed.
@@ -153,8 +153,8 @@ fn swaps_two_tiles() {
         }
         Ok(())
     });
-    let area = Area { x: 8, y: 0, width: 8, height: 8 };
-    let by = Some((area, Some("share 1".to_owned())));
+    let rect = Rect { x: 8, y: 0, width: 8, height: 8 };
+    let by = Some((rect, Some("share 1".to_owned())));
     assert_eq!(the_difference(&found), (64, (8, 0), Some(Gradient::color(0, 8)), by));
 }
 
@@ -177,9 +177,9 @@ fn writes_a_pixel_twice_with_a_torn_value() {
     let Fault::NotOnce { pixels: 1, x: 5, y: 9, computations } = &twice.fault else {
         panic!("{twice:#?}");
     };
-    let pixel = Area { x: 5, y: 9, width: 1, height: 1 };
-    let tiles: Vec<Area> = computations.iter().map(|computation| computation.tile).collect();
-    assert_eq!(tiles, [Area { x: 0, y: 8, width: 8, height: 4 }, pixel]);
+    let pixel = Rect { x: 5, y: 9, width: 1, height: 1 };
+    let tiles: Vec<Rect> = computations.iter().map(|computation| computation.tile).collect();
+    assert_eq!(tiles, [Rect { x: 0, y: 8, width: 8, height: 4 }, pixel]);
 
     let [red, _, blue] = Gradient::color(5, 9);
     let (pixels, first, color, by) = the_difference(std::slice::from_ref(different));
@@ -228,7 +228,7 @@ fn computes_but_does_not_store() {
         image.pixels_mut()[..pixels - 3].copy_from_slice(&elsewhere.pixels()[..pixels - 3]);
         Ok(())
     });
-    let by = (Area { x: 16, y: 8, width: 4, height: 4 }, Some("share 1".to_owned()));
+    let by = (Rect { x: 16, y: 8, width: 4, height: 4 }, Some("share 1".to_owned()));
     assert_eq!(the_difference(&found), (3, (17, 11), None, Some(by)));
 }
 
@@ -326,7 +326,7 @@ fn is_wrong_by_one_ulp_in_one_pixel() {
         Ok(())
     });
     let [red, green, blue] = Gradient::color(13, 7);
-    let by = (Area { x: 8, y: 0, width: 8, height: 8 }, Some("share 1".to_owned()));
+    let by = (Rect { x: 8, y: 0, width: 8, height: 8 }, Some("share 1".to_owned()));
     assert_eq!(the_difference(&found), (1, (13, 7), Some([red, green.next_up(), blue]), Some(by)));
 }
 
@@ -398,15 +398,15 @@ impl Strategy for Remembers {
         "computes a picture once"
     }
 
-    fn threads_start(&self) -> ThreadsStart {
-        ThreadsStart::Render
+    fn threads(&self) -> Threads {
+        Threads::PerRender
     }
 
-    fn rule(&self) -> Rule {
-        Rule {
-            piece: Piece::Tile,
-            dealing: Dealing::Shared { chunk: 1 },
-            delivery: Delivery::InPlace,
+    fn policy(&self) -> Policy {
+        Policy {
+            granularity: Granularity::Tile,
+            scheduling: Scheduling::Dynamic { chunk: 1 },
+            output: Output::InPlace,
         }
     }
 

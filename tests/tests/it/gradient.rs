@@ -16,7 +16,7 @@ impl Gradient {
 
 impl Work for Gradient {
     fn render(&self, tile: &mut Tile<'_>) {
-        let left = tile.area().x;
+        let left = tile.rect().x;
         for (y, row) in tile.rows() {
             (left..).zip(row).for_each(|(x, color)| *color = Self::color(x, y));
         }
@@ -32,7 +32,7 @@ pub(crate) struct Panics<W> {
 
 impl<W: Work> Work for Panics<W> {
     fn render(&self, tile: &mut Tile<'_>) {
-        if tile.area().contains(self.x, self.y) {
+        if tile.rect().contains(self.x, self.y) {
             // A panic, without the message on standard error that `panic!` writes.
             resume_unwind(Box::new("injected"));
         }

@@ -4,7 +4,7 @@
 //! `broken_strategies` shows that `check` catches what is wrong; this is the proof for the real
 //! tracer, against pictures that no strategy had a hand in.
 
-use rayweave_contract::{Area, Image, Plan, Rgb, Tile, Work};
+use rayweave_contract::{Image, Plan, Rect, Rgb, Tile, Work};
 use rayweave_core::{Precision, Scene, tracer};
 use rayweave_tests::picture::pixel_by_pixel;
 use rayweave_tests::{random_scene::random_scene, scenes};
@@ -136,7 +136,7 @@ fn tiles_are_where_they_say() {
     struct Place;
     impl Work for Place {
         fn render(&self, tile: &mut Tile<'_>) {
-            let Area { x: left, y: top, width, height } = tile.area();
+            let Rect { x: left, y: top, width, height } = tile.rect();
             let mut rows = 0;
             for (y, row) in tile.rows() {
                 assert_eq!((y, row.len() as u32), (top + rows, width));

@@ -546,9 +546,9 @@ fn off_surface(primitive: &Primitive, point: DVec3) -> f64 {
         }
         Primitive::Triangle(Triangle { vertices: [a, b, c], .. }) => {
             // The areas of the three parts add up to the whole only within it.
-            let area = |a: DVec3, b: DVec3, c: DVec3| (b - a).cross(c - a).length();
-            let whole = area(*a, *b, *c);
-            (area(point, *a, *b) + area(point, *b, *c) + area(point, *c, *a) - whole).abs()
+            let rect = |a: DVec3, b: DVec3, c: DVec3| (b - a).cross(c - a).length();
+            let whole = rect(*a, *b, *c);
+            (rect(point, *a, *b) + rect(point, *b, *c) + rect(point, *c, *a) - whole).abs()
                 / whole.sqrt()
         }
     }

@@ -1,7 +1,7 @@
 //! Strategies have to pass every check, and to survive work that panics.
 
 use crate::gradient::{Gradient, PATIENCE, Panics, threads, tile};
-use rayweave_contract::{Image, Plan, Strategy, StrategyError, ThreadsStart, Tile, Work};
+use rayweave_contract::{Image, Plan, Strategy, StrategyError, Threads, Tile, Work};
 use rayweave_measure::{Case, Check};
 use rayweave_registry::{available, reference};
 use std::num::NonZeroUsize;
@@ -38,7 +38,7 @@ fn the_real_strategies_agree() {
         })
         .expect("a reference picture");
     assert_eq!(verdict.findings, []);
-    let alone = available().iter().filter(|s| s.threads_start() == ThreadsStart::Never).count();
+    let alone = available().iter().filter(|s| s.threads() == Threads::None).count();
     let settings = ((available().len() - alone) * THREADS.len() + alone) * 4;
     assert_eq!(verdict.compared, settings * sizes.len() * 2);
     assert_eq!(verdict.compared, told);

@@ -9,7 +9,7 @@ use crate::picture::Format;
 use crate::watched::watched;
 use crate::{Outcome, print};
 use clap::Args;
-use rayweave_contract::{Area, Strategy};
+use rayweave_contract::{Rect, Strategy};
 use rayweave_core::primary_rays;
 use rayweave_measure::Protocol;
 use rayweave_measure::explanation::{Experiment, ExplainError};
@@ -99,7 +99,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
         Err(error) => return Err(error.to_string()),
     };
 
-    let rays = |tile: Area| {
+    let rays = |tile: Rect| {
         primary_rays(tile.width, tile.height, &input.scene.render, input.execution.share_samples)
     };
     let report = Report {

@@ -48,7 +48,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let threads = arguments.threads.unwrap_or_else(all_threads);
     let plan = Plan { threads, tile: arguments.tile.of(input.width, input.height)? };
     // What has no threads of its own computes on one, whatever was asked for.
-    let computing = strategy.threads_start().computing_threads(threads);
+    let computing = strategy.threads().computing_threads(threads);
     let mut picture = input.picture()?;
     let begin = Instant::now();
     let work = input.work(input.width, input.height)?;

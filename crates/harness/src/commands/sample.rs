@@ -6,7 +6,7 @@ use crate::input::Input;
 use crate::options::{SceneOptions, TileOption, parse_threads, strategy_parser};
 use crate::{Outcome, print};
 use clap::Args;
-use rayweave_contract::{Area, Strategy};
+use rayweave_contract::{Rect, Strategy};
 use rayweave_core::primary_rays;
 use rayweave_measure::Stopwatch;
 use rayweave_measure::compare::{Entry, Executor};
@@ -46,7 +46,7 @@ fn measure(arguments: &Arguments) -> Result<Rendered, String> {
     let tile = arguments.tile.of(width, height)?;
     let work = input.work(width, height)?;
     let entry = Entry { strategy: arguments.strategy, threads: arguments.threads };
-    let rays = |tile: Area| {
+    let rays = |tile: Rect| {
         primary_rays(tile.width, tile.height, &input.scene.render, input.execution.share_samples)
     };
     let stopwatch = Stopwatch::new(&*work, width, height, tile).map_err(|e| e.to_string())?;

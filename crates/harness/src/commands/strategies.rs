@@ -1,7 +1,7 @@
 //! `rayweave strategies`: what there is.
 
 use crate::{Outcome, print};
-use rayweave_contract::{Plan, ThreadsStart};
+use rayweave_contract::{Plan, Threads};
 use rayweave_registry::STRATEGIES;
 use std::num::{NonZeroU32, NonZeroUsize};
 
@@ -9,10 +9,10 @@ pub fn run() -> Result<Outcome, String> {
     let width = STRATEGIES.iter().map(|strategy| strategy.name().len()).max().unwrap_or(0);
     let mut text = String::new();
     for strategy in STRATEGIES {
-        let threads = match strategy.threads_start() {
-            ThreadsStart::Never => "no threads of its own",
-            ThreadsStart::Prepare => "threads started once, before rendering",
-            ThreadsStart::Render => "threads started within each rendering",
+        let threads = match strategy.threads() {
+            Threads::None => "no threads of its own",
+            Threads::Pool => "threads started once, before rendering",
+            Threads::PerRender => "threads started within each rendering",
         };
         text += &format!(
             "{:width$}  {}\n{:width$}  {threads}\n",

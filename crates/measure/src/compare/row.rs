@@ -2,7 +2,7 @@
 
 use super::{Entry, Rays, Rendering, Sample};
 use crate::statistics::{Interval, efficiency, karp_flatt, median, ratio_interval};
-use rayweave_contract::{Digest, Rule, ThreadsStart};
+use rayweave_contract::{Digest, Policy, Threads};
 
 /// What a row is there for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,9 +34,9 @@ pub struct Row {
     /// What it is there for.
     pub role: Role,
     /// Which figure contains the start of the threads.
-    pub threads_start: ThreadsStart,
+    pub threads_start: Threads,
     /// How it deals out the work.
-    pub rule: Rule,
+    pub policy: Policy,
     /// Whether there is a picture, and every picture was the reference's.
     pub identical: bool,
     /// Of the first picture that was not the reference's, or else of all of them; `None` without
@@ -79,14 +79,14 @@ impl Row {
     }
 
     pub(super) fn new(entry: &Entry<'_>, role: Role) -> Self {
-        let threads_start = entry.strategy.threads_start();
+        let threads_start = entry.strategy.threads();
         let threads = threads_start.computing_threads(entry.threads).get();
         Self {
             strategy: entry.strategy.name(),
             threads,
             role,
             threads_start,
-            rule: entry.strategy.rule(),
+            policy: entry.strategy.policy(),
             // Until the warm-up has shown otherwise.
             identical: true,
             digest: None,

@@ -2,12 +2,12 @@
 
 use super::*;
 use rayweave_contract::{
-    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, StrategyError, ThreadsStart,
+    Granularity, Image, Output, Plan, Policy, Renderer, Scheduling, StrategyError, Threads,
 };
 use std::cell::RefCell;
 
 /// Never asked to render: the executor makes up what it would do.
-pub(super) struct Named(pub &'static str, ThreadsStart);
+pub(super) struct Named(pub &'static str, Threads);
 
 impl Strategy for Named {
     fn name(&self) -> &'static str {
@@ -18,15 +18,15 @@ impl Strategy for Named {
         "a name"
     }
 
-    fn threads_start(&self) -> ThreadsStart {
+    fn threads(&self) -> Threads {
         self.1
     }
 
-    fn rule(&self) -> Rule {
-        Rule {
-            piece: Piece::Tile,
-            dealing: Dealing::Shared { chunk: 1 },
-            delivery: Delivery::InPlace,
+    fn policy(&self) -> Policy {
+        Policy {
+            granularity: Granularity::Tile,
+            scheduling: Scheduling::Dynamic { chunk: 1 },
+            output: Output::InPlace,
         }
     }
 
@@ -35,9 +35,9 @@ impl Strategy for Named {
     }
 }
 
-pub(super) static REFERENCE: Named = Named("reference", ThreadsStart::Never);
-static POOL: Named = Named("pool", ThreadsStart::Prepare);
-pub(super) static QUEUE: Named = Named("queue", ThreadsStart::Render);
+pub(super) static REFERENCE: Named = Named("reference", Threads::None);
+static POOL: Named = Named("pool", Threads::Pool);
+pub(super) static QUEUE: Named = Named("queue", Threads::PerRender);
 
 /// Answers the n-th call of a strategy by a function of its name and n, and moves the clock by the
 /// answer.

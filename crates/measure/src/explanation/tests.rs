@@ -3,7 +3,7 @@
 use super::*;
 use crate::timeline::{Lane, Piece};
 use rayweave_contract::{
-    Area, Dealing, Delivery, Renderer, Rule, StrategyError, ThreadsStart, Tile,
+    Granularity, Output, Policy, Rect, Renderer, Scheduling, StrategyError, Threads, Tile,
 };
 use std::time::Duration;
 
@@ -40,15 +40,15 @@ impl Strategy for Obedience {
         "one thread"
     }
 
-    fn threads_start(&self) -> ThreadsStart {
-        if matches!(self, Self::Alone) { ThreadsStart::Never } else { ThreadsStart::Render }
+    fn threads(&self) -> Threads {
+        if matches!(self, Self::Alone) { Threads::None } else { Threads::PerRender }
     }
 
-    fn rule(&self) -> Rule {
-        Rule {
-            piece: rayweave_contract::Piece::Tile,
-            dealing: Dealing::Equal,
-            delivery: Delivery::InPlace,
+    fn policy(&self) -> Policy {
+        Policy {
+            granularity: Granularity::Tile,
+            scheduling: Scheduling::Static,
+            output: Output::InPlace,
         }
     }
 
@@ -88,7 +88,7 @@ fn each_strategy_has_a_row_and_its_pieces() {
     for row in &explanation.rows {
         assert_eq!((row.strategy, row.threads), ("all", 2));
         let areas: Vec<_> =
-            row.timeline.lanes[0].pieces.iter().map(|p| (p.area.x, p.area.y)).collect();
+            row.timeline.lanes[0].pieces.iter().map(|p| (p.rect.x, p.rect.y)).collect();
         assert_eq!(areas, [(0, 0), (2, 0), (4, 0), (0, 2), (2, 2), (4, 2)]);
         // Whatever the times: the second thread has none of the work.
         assert_eq!(row.timeline.lanes.len(), 1);
@@ -144,7 +144,7 @@ fn a_long_gap_is_longer_than_999_of_1000() {
     let mut after = |gap: u64| {
         let begin = end + gap;
         end = begin + 5;
-        Piece { area: Area { x: 0, y: 0, width: 1, height: 1 }, begin_ns: begin, end_ns: end }
+        Piece { rect: Rect { x: 0, y: 0, width: 1, height: 1 }, begin_ns: begin, end_ns: end }
     };
     // The first has no gap before it.
     let pieces = std::iter::once(50_000).chain((1..=2000).rev()).map(&mut after).collect();

@@ -1,29 +1,29 @@
 use super::*;
 use proptest::prelude::*;
-use rayweave_contract::{Dealing, Piece};
+use rayweave_contract::{Granularity, Scheduling};
 
 /// The kind of piece is the caller's matter: it shows in the costs.
-fn rule(dealing: Dealing, delivery: Delivery) -> Rule {
-    Rule { piece: Piece::Row, dealing, delivery }
+fn rule(scheduling: Scheduling, output: Output) -> Policy {
+    Policy { granularity: Granularity::Row, scheduling, output }
 }
 
-fn in_place(dealing: Dealing) -> Rule {
-    rule(dealing, Delivery::InPlace)
+fn in_place(scheduling: Scheduling) -> Policy {
+    rule(scheduling, Output::InPlace)
 }
 
-fn free(dealing: Dealing, threads: usize, pieces: &[f64]) -> Run {
-    simulate(in_place(dealing), threads, pieces, &Overheads::default())
+fn free(scheduling: Scheduling, threads: usize, pieces: &[f64]) -> Run {
+    simulate(in_place(scheduling), threads, pieces, &Overheads::default())
 }
 
-const ONE_BY_ONE: Dealing = Dealing::Shared { chunk: 1 };
+const ONE_BY_ONE: Scheduling = Scheduling::Dynamic { chunk: 1 };
 
-const ALL: [Dealing; 6] = [
-    Dealing::Equal,
+const ALL: [Scheduling; 6] = [
+    Scheduling::Static,
     ONE_BY_ONE,
-    Dealing::Shared { chunk: 3 },
-    Dealing::Guided,
-    Dealing::Stealing,
-    Dealing::Halving,
+    Scheduling::Dynamic { chunk: 3 },
+    Scheduling::Guided,
+    Scheduling::WorkStealing,
+    Scheduling::RecursiveSplit,
 ];
 
 /// One heavy piece at the end, as the last row of a picture: who gets it late makes all wait.
@@ -31,10 +31,10 @@ const PIECES: [f64; 8] = [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 9.0];
 
 #[test]
 fn equal_shares_wait_for_the_heaviest() {
-    assert_eq!(free(Dealing::Equal, 2, &PIECES), Run { time: 12.0, computed: vec![4.0, 12.0] });
+    assert_eq!(free(Scheduling::Static, 2, &PIECES), Run { time: 12.0, computed: vec![4.0, 12.0] });
     // Of 8 pieces 3 threads get 2, 3 and 3.
-    assert_eq!(free(Dealing::Equal, 3, &PIECES).computed, [2.0, 3.0, 11.0]);
-    assert_eq!(free(Dealing::Equal, 16, &PIECES).time, 9.0);
+    assert_eq!(free(Scheduling::Static, 3, &PIECES).computed, [2.0, 3.0, 11.0]);
+    assert_eq!(free(Scheduling::Static, 16, &PIECES).time, 9.0);
 }
 
 #[test]
@@ -43,29 +43,32 @@ fn a_shared_counter_gives_to_who_is_free() {
     assert_eq!(free(ONE_BY_ONE, 2, &PIECES), Run { time: 12.0, computed: vec![4.0, 12.0] });
     assert_eq!(free(ONE_BY_ONE, 2, &[9.0, 1.0, 1.0, 1.0]).computed, [9.0, 3.0]);
     // Chunks of 3: 0..3 and 3..6 until 3, then thread 0 gets both that are left.
-    assert_eq!(free(Dealing::Shared { chunk: 3 }, 2, &PIECES).computed, [13.0, 3.0]);
+    assert_eq!(free(Scheduling::Dynamic { chunk: 3 }, 2, &PIECES).computed, [13.0, 3.0]);
 }
 
 #[test]
 fn guided_takes_ever_fewer() {
     // 8 left: thread 0 takes 4; 4 left: thread 1 takes 2, until 2, then one of 2, until 3, then the
     // last, until 12.
-    assert_eq!(free(Dealing::Guided, 2, &PIECES), Run { time: 12.0, computed: vec![4.0, 12.0] });
+    assert_eq!(free(Scheduling::Guided, 2, &PIECES), Run { time: 12.0, computed: vec![4.0, 12.0] });
     let even = [1.0; 8];
     // 4 and 2 at 0; thread 1 takes one at 2 and one at 3.
-    assert_eq!(free(Dealing::Guided, 2, &even), Run { time: 4.0, computed: vec![4.0, 4.0] });
+    assert_eq!(free(Scheduling::Guided, 2, &even), Run { time: 4.0, computed: vec![4.0, 4.0] });
 }
 
 #[test]
 fn the_idle_steal_half() {
     // Shares of 4. At 4 thread 0 is idle; thread 1 then begins its fourth piece, so there is
     // nothing left to steal.
-    assert_eq!(free(Dealing::Stealing, 2, &PIECES).computed, [4.0, 12.0]);
+    assert_eq!(free(Scheduling::WorkStealing, 2, &PIECES).computed, [4.0, 12.0]);
     // All of the load is in the second share: thread 0 takes 2 of the 4 before thread 1 begins.
     let late = [0.0, 0.0, 0.0, 0.0, 5.0, 5.0, 5.0, 5.0];
-    assert_eq!(free(Dealing::Stealing, 2, &late), Run { time: 10.0, computed: vec![10.0, 10.0] });
+    assert_eq!(
+        free(Scheduling::WorkStealing, 2, &late),
+        Run { time: 10.0, computed: vec![10.0, 10.0] }
+    );
     let overheads = Overheads { steal: 0.5, ..Overheads::default() };
-    assert_eq!(simulate(in_place(Dealing::Stealing), 2, &late, &overheads).time, 10.5);
+    assert_eq!(simulate(in_place(Scheduling::WorkStealing), 2, &late, &overheads).time, 10.5);
 }
 
 #[test]
@@ -73,19 +76,25 @@ fn halves_are_stolen_whole_and_halved_again() {
     // Two splits: parts 0..2, 2..4 and 4..8 lie in thread 0's queue; thread 1 steals the largest,
     // halves it twice as well, and computes 4, then 5, then 6..8.
     let even = [1.0; 8];
-    assert_eq!(free(Dealing::Halving, 2, &even), Run { time: 4.0, computed: vec![4.0, 4.0] });
+    assert_eq!(
+        free(Scheduling::RecursiveSplit, 2, &even),
+        Run { time: 4.0, computed: vec![4.0, 4.0] }
+    );
     // Two pieces of 6 each are one part: it is not divided, though the other thread is idle from 2
     // on.
     let pieces = [6.0, 6.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0];
-    assert_eq!(free(Dealing::Halving, 2, &pieces), Run { time: 12.0, computed: vec![12.0, 2.0] });
+    assert_eq!(
+        free(Scheduling::RecursiveSplit, 2, &pieces),
+        Run { time: 12.0, computed: vec![12.0, 2.0] }
+    );
     // Under stealing it would be.
-    assert_eq!(free(Dealing::Stealing, 2, &pieces).computed, [6.0, 8.0]);
+    assert_eq!(free(Scheduling::WorkStealing, 2, &pieces).computed, [6.0, 8.0]);
 }
 
 #[test]
 fn threads_begin_one_after_the_other() {
     let overheads = Overheads { start: 10.0, next_start: 2.0, piece: 0.5, ..Overheads::default() };
-    let run = simulate(in_place(Dealing::Equal), 3, &[1.0; 3], &overheads);
+    let run = simulate(in_place(Scheduling::Static), 3, &[1.0; 3], &overheads);
     assert_eq!(run.time, 10.0 + 2.0 * 2.0 + 1.5);
     // Thread 0 has taken all before thread 1 begins.
     let run = simulate(in_place(ONE_BY_ONE), 2, &[0.5; 2], &overheads);
@@ -94,7 +103,7 @@ fn threads_begin_one_after_the_other() {
 
 #[test]
 fn a_lock_is_had_by_one_at_a_time() {
-    let locked = rule(Dealing::Equal, Delivery::Locked);
+    let locked = rule(Scheduling::Static, Output::Mutex);
     let overheads =
         |hold, handover| Overheads { deliver: Access { hold, handover }, ..Overheads::default() };
     // Both come at 1, 2 ...: thread 1 always waits for thread 0, and is one hold later from then
@@ -118,15 +127,15 @@ fn a_lock_is_had_by_one_at_a_time() {
 #[test]
 fn a_counter_is_had_by_one_at_a_time() {
     let overheads = Overheads { take: Access { hold: 1.0, handover: 1.0 }, ..Overheads::default() };
-    let run = |dealing| simulate(in_place(dealing), 2, &[0.0; 4], &overheads).time;
+    let run = |scheduling| simulate(in_place(scheduling), 2, &[0.0; 4], &overheads).time;
     assert_eq!(run(ONE_BY_ONE), 1.0 + 2.0 + 2.0 + 2.0);
-    assert_eq!(run(Dealing::Shared { chunk: 2 }), 1.0 + 2.0);
-    assert_eq!(run(Dealing::Equal), 0.0, "nothing is shared");
+    assert_eq!(run(Scheduling::Dynamic { chunk: 2 }), 1.0 + 2.0);
+    assert_eq!(run(Scheduling::Static), 0.0, "nothing is shared");
 }
 
 #[test]
 fn who_sends_does_not_wait() {
-    let sent = rule(Dealing::Equal, Delivery::Sent);
+    let sent = rule(Scheduling::Static, Output::Channel);
     let overheads =
         Overheads { deliver: Access { hold: 3.0, handover: 0.0 }, ..Overheads::default() };
     // The owner receives at 1, 4, 7 and 10: the threads have long ended.
@@ -138,9 +147,9 @@ fn who_sends_does_not_wait() {
 #[test]
 fn no_pieces_take_the_start_alone() {
     let overheads = Overheads { start: 7.0, ..Overheads::default() };
-    for dealing in ALL {
+    for scheduling in ALL {
         assert_eq!(
-            simulate(in_place(dealing), 3, &[], &overheads),
+            simulate(in_place(scheduling), 3, &[], &overheads),
             Run { time: 7.0, computed: vec![0.0; 3] }
         );
     }
@@ -155,16 +164,16 @@ proptest! {
     fn work_is_conserved_and_n_threads_are_at_most_n_times_as_fast(
         pieces in prop::collection::vec(0_u32..1000, 1..200),
         threads in 1_usize..40,
-        delivery in prop::sample::select(vec![Delivery::InPlace, Delivery::Locked, Delivery::Sent]),
+        output in prop::sample::select(vec![Output::InPlace, Output::Mutex, Output::Channel]),
         overhead in 0_u32..50,
     ) {
         let pieces: Vec<f64> = pieces.into_iter().map(f64::from).collect();
         let total: f64 = pieces.iter().sum();
         let access = Access { hold: f64::from(overhead), handover: f64::from(overhead) };
         let overheads = Overheads { piece: f64::from(overhead), take: access, deliver: access, ..Overheads::default() };
-        for dealing in ALL {
-            let run = simulate(rule(dealing, delivery), threads, &pieces, &overheads);
-            prop_assert_eq!(run.computed.iter().sum::<f64>(), total, "{:?}", dealing);
+        for scheduling in ALL {
+            let run = simulate(rule(scheduling, output), threads, &pieces, &overheads);
+            prop_assert_eq!(run.computed.iter().sum::<f64>(), total, "{:?}", scheduling);
             prop_assert!(run.time >= run.computed.iter().copied().fold(0.0, f64::max));
             prop_assert!(run.time * threads as f64 >= total + f64::from(overhead) * pieces.len() as f64);
         }
@@ -181,9 +190,9 @@ proptest! {
         let (total, longest) = (pieces.iter().sum::<f64>(), pieces.iter().copied().fold(0.0, f64::max));
         let inverse = 1.0 / threads as f64;
         let bound = total * inverse + longest * (1.0 - inverse);
-        for dealing in [ONE_BY_ONE, Dealing::Stealing] {
-            let time = free(dealing, threads, &pieces).time;
-            prop_assert!(time <= bound * (1.0 + 1e-12), "{:?}: {} is above {}", dealing, time, bound);
+        for scheduling in [ONE_BY_ONE, Scheduling::WorkStealing] {
+            let time = free(scheduling, threads, &pieces).time;
+            prop_assert!(time <= bound * (1.0 + 1e-12), "{:?}: {} is above {}", scheduling, time, bound);
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::table::label;
 use super::{Report, csv, json, markdown, scene_file};
 use crate::{machine, style};
-use rayweave_contract::{Dealing, Piece};
+use rayweave_contract::{Granularity, Scheduling};
 use rayweave_measure::compare::{Role, Row};
 use rayweave_measure::{Interval, Load};
 
@@ -151,15 +151,15 @@ fn why(report: &Report<'_>, load: &Load) -> String {
     } else if won.low <= 1.0 {
         format!("{strategy} comes first; faster than alone for certain: {}", certain.join(", "))
     } else {
-        let dealing = dealing(winner.rule.dealing);
-        format!("{strategy} ({dealing}) is first, with {as_good} more within the intervals")
+        let scheduling = scheduling(winner.policy.scheduling);
+        format!("{strategy} ({scheduling}) is first, with {as_good} more within the intervals")
     };
     let mut parts = vec![format!("{}: {verdict}", name(report))];
     let uneven = load.unevenness(threads);
     parts.push(if uneven < EVEN {
         format!("the cost is even, equal shares of tiles differ by {:.0} %", (uneven - 1.0) * 100.0)
     } else {
-        let equal_tiles = |row: &Row| row.rule.dealing == Dealing::Equal && row.rule.piece == Piece::Tile;
+        let equal_tiles = |row: &Row| row.policy.scheduling == Scheduling::Static && row.policy.granularity == Granularity::Tile;
         let equal = best(report, |row| equal_tiles(row) && row.threads == threads).and_then(speedup);
         let measured = equal.map(|equal| format!(", {:.2} was measured", equal.median)).unwrap_or_default();
         let most = threads as f64 / uneven;
@@ -176,20 +176,20 @@ fn why(report: &Report<'_>, load: &Load) -> String {
         report.comparison.rows.first().and_then(|row| row.figures).map(|figures| figures.median_ns);
     if let Some(ns) = whole.filter(|&ns| ns < FREE_NS) {
         parts.push(format!(
-            "all pixels take {:.2} ms, so starting threads and dealing out count",
+            "all pixels take {:.2} ms, so starting threads and scheduling out count",
             ns / 1e6
         ));
     }
     parts.join("; ") + "."
 }
 
-fn dealing(dealing: Dealing) -> &'static str {
-    match dealing {
-        Dealing::Equal => "equal shares",
-        Dealing::Shared { .. } => "the next piece to whoever is free",
-        Dealing::Guided => "ever fewer pieces to whoever is free",
-        Dealing::Stealing => "shares, and half of another's to who is idle",
-        Dealing::Halving => "halves of the range to who is idle",
+fn scheduling(scheduling: Scheduling) -> &'static str {
+    match scheduling {
+        Scheduling::Static => "equal shares",
+        Scheduling::Dynamic { .. } => "the next piece to whoever is free",
+        Scheduling::Guided => "ever fewer pieces to whoever is free",
+        Scheduling::WorkStealing => "shares, and half of another's to who is idle",
+        Scheduling::RecursiveSplit => "halves of the range to who is idle",
     }
 }
 
@@ -211,8 +211,8 @@ mod tests {
             // Of the largest number of threads, which the bound is for.
             comparison.rows[2].threads =
                 comparison.rows.iter().map(|row| row.threads).max().expect("rows");
-            let rule = &mut comparison.rows[2].rule;
-            (rule.dealing, rule.piece) = (Dealing::Equal, Piece::Tile);
+            let policy = &mut comparison.rows[2].policy;
+            (policy.scheduling, policy.granularity) = (Scheduling::Static, Granularity::Tile);
         }
         // In the corner the pool loses to the reference.
         let figures = corner.rows[2].figures.as_mut().expect("figures");
@@ -268,7 +268,7 @@ mod tests {
             "corner: no strategy pays, sequential is first; \
              equal shares of tiles: max over mean cost is 6750.00, so at most 1.33, 0.90 was measured; one tile has \
              75 % of the cost, so whole tiles allow at most 1.33; all pixels take 5.00 ms, so starting threads and \
-             dealing out count."
+             scheduling out count."
         );
     }
 

@@ -2,7 +2,7 @@
 
 use super::{BothReport, Report, Subject, baseline, search};
 use crate::{machine, noise, style};
-use rayweave_contract::ThreadsStart;
+use rayweave_contract::Threads;
 use rayweave_core::{Formulas, Sampling, Search};
 use rayweave_measure::Comparison;
 use rayweave_measure::compare::{Rays, Role, Row};
@@ -112,9 +112,9 @@ fn cells(subject: &Subject, row: &Row) -> [String; HEADER.len()] {
         (None, false) => "NO",
     };
     let start = match row.threads_start {
-        ThreadsStart::Never => None,
-        ThreadsStart::Prepare => figures.map(|f| format!("before: {:.0} us", f.prepare_ns / 1e3)),
-        ThreadsStart::Render => Some("in the time".to_owned()),
+        Threads::None => None,
+        Threads::Pool => figures.map(|f| format!("before: {:.0} us", f.prepare_ns / 1e3)),
+        Threads::PerRender => Some("in the time".to_owned()),
     };
     [
         label(row),

@@ -3,7 +3,7 @@
 //! together.
 
 use super::*;
-use rayweave_contract::{Dealing, Delivery, Digest, Image, Piece, Rule};
+use rayweave_contract::{Digest, Granularity, Image, Output, Policy, Scheduling};
 use rayweave_measure::Interval;
 use rayweave_measure::compare::{Figures, OneShot, Rays, Role, Sample};
 use std::time::Duration;
@@ -30,23 +30,17 @@ fn around(median: f64) -> Interval {
     Interval { median, low: median - 0.04, high: median + 0.06 }
 }
 
-fn row(
-    strategy: &'static str,
-    threads: usize,
-    role: Role,
-    threads_start: ThreadsStart,
-    ns: u64,
-) -> Row {
+fn row(strategy: &'static str, threads: usize, role: Role, threads_start: Threads, ns: u64) -> Row {
     let speedup = 2e9 / ns as f64;
     Row {
         strategy,
         threads,
         role,
         threads_start,
-        rule: Rule {
-            piece: Piece::Tile,
-            dealing: Dealing::Shared { chunk: 1 },
-            delivery: Delivery::InPlace,
+        policy: Policy {
+            granularity: Granularity::Tile,
+            scheduling: Scheduling::Dynamic { chunk: 1 },
+            output: Output::InPlace,
         },
         identical: true,
         digest: Some(digest(1.0)),
@@ -69,11 +63,11 @@ fn row(
 }
 
 pub(super) fn comparison() -> Comparison {
-    let mut wrong = row("queue", 2, Role::Contender, ThreadsStart::Render, 1_000_000_000);
+    let mut wrong = row("queue", 2, Role::Contender, Threads::PerRender, 1_000_000_000);
     wrong.identical = false;
     wrong.digest = Some(digest(0.5));
     wrong.figures = None;
-    let mut failed = row("many, \"too\" many", 9000, Role::Contender, ThreadsStart::Render, 1);
+    let mut failed = row("many, \"too\" many", 9000, Role::Contender, Threads::PerRender, 1);
     failed.digest = None;
     failed.identical = false;
     failed.figures = None;
@@ -81,9 +75,9 @@ pub(super) fn comparison() -> Comparison {
     failed.rays = None;
     failed.error = Some("cannot start 9000 threads".to_owned());
     let rows = vec![
-        row("sequential", 1, Role::Reference, ThreadsStart::Never, 2_000_000_000),
-        row("sequential", 1, Role::Control, ThreadsStart::Never, 2_010_000_000),
-        row("pool", 2, Role::Contender, ThreadsStart::Prepare, 1_025_641_026),
+        row("sequential", 1, Role::Reference, Threads::None, 2_000_000_000),
+        row("sequential", 1, Role::Control, Threads::None, 2_010_000_000),
+        row("pool", 2, Role::Contender, Threads::Pool, 1_025_641_026),
         wrong,
         failed,
     ];

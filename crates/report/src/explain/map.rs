@@ -2,7 +2,7 @@
 
 use super::color;
 use plotters::prelude::*;
-use rayweave_contract::{Area, Image};
+use rayweave_contract::{Image, Rect};
 use rayweave_measure::explanation::Row;
 use rayweave_measure::timeline::{Piece, Timeline};
 
@@ -36,9 +36,9 @@ pub(super) fn owners(timeline: &Timeline, mut picture: Image) -> Image {
     for (index, lane) in timeline.lanes.iter().enumerate() {
         let RGBColor(red, green, blue) = color(index);
         let rgb = [red, green, blue].map(|channel| f32::from(channel) / 255.0);
-        for Piece { area, .. } in &lane.pieces {
-            let columns = area.x.min(width) as usize..(area.x + area.width).min(width) as usize;
-            for y in area.y.min(height)..(area.y + area.height).min(height) {
+        for Piece { rect, .. } in &lane.pieces {
+            let columns = rect.x.min(width) as usize..(rect.x + rect.width).min(width) as usize;
+            for y in rect.y.min(height)..(rect.y + rect.height).min(height) {
                 picture.pixels_mut()[y as usize * width as usize..][columns.clone()].fill(rgb);
             }
         }
@@ -49,17 +49,17 @@ pub(super) fn owners(timeline: &Timeline, mut picture: Image) -> Image {
 /// Part of the picture, and what a pixel of it took in the mean, in nanoseconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Cell {
-    area: Area,
+    rect: Rect,
     ns: f64,
 }
 
 /// The pieces themselves, or squares of pixels if there are too many of them.
 fn cells(timeline: &Timeline, (width, height): (u32, u32)) -> Vec<Cell> {
     let pieces = || timeline.lanes.iter().flat_map(|lane| &lane.pieces);
-    let pixels = |area: Area| f64::from(area.width) * f64::from(area.height);
+    let pixels = |rect: Rect| f64::from(rect.width) * f64::from(rect.height);
     if timeline.pieces() as u64 <= MAX_CELLS {
         let cell =
-            |piece: &Piece| Cell { area: piece.area, ns: piece.ns() as f64 / pixels(piece.area) };
+            |piece: &Piece| Cell { rect: piece.rect, ns: piece.ns() as f64 / pixels(piece.rect) };
         return pieces().map(cell).collect();
     }
     let cut = |side: u32| u64::from(width.div_ceil(side)) * u64::from(height.div_ceil(side));
@@ -67,8 +67,8 @@ fn cells(timeline: &Timeline, (width, height): (u32, u32)) -> Vec<Cell> {
     let columns = width.div_ceil(side) as usize;
     let mut sums = vec![0.0; columns * height.div_ceil(side) as usize];
     for piece in pieces() {
-        let Area { x, y, width, height } = piece.area;
-        let ns = piece.ns() as f64 / pixels(piece.area);
+        let Rect { x, y, width, height } = piece.rect;
+        let ns = piece.ns() as f64 / pixels(piece.rect);
         for y in y..y + height {
             for x in x..x + width {
                 if let Some(sum) = sums.get_mut((y / side) as usize * columns + (x / side) as usize)
@@ -80,8 +80,8 @@ fn cells(timeline: &Timeline, (width, height): (u32, u32)) -> Vec<Cell> {
     }
     let cell = |(place, &sum): (usize, &f64)| {
         let (x, y) = ((place % columns) as u32 * side, (place / columns) as u32 * side);
-        let area = Area { x, y, width: side.min(width - x), height: side.min(height - y) };
-        Cell { area, ns: sum / pixels(area) }
+        let rect = Rect { x, y, width: side.min(width - x), height: side.min(height - y) };
+        Cell { rect, ns: sum / pixels(rect) }
     };
     sums.iter().enumerate().map(cell).collect()
 }
@@ -120,9 +120,9 @@ fn draw(row: &Row, (width, height): (u32, u32), text: &mut String) -> Drawn {
         .y_label_formatter(&|y| format!("{:.0}", f64::from(height) - y))
         .x_label_formatter(&|x| format!("{x:.0}"))
         .draw()?;
-    chart.draw_series(cells.iter().map(|&Cell { area, ns }| {
+    chart.draw_series(cells.iter().map(|&Cell { rect, ns }| {
         let corner = |x: u32, y: u32| (f64::from(x), f64::from(height) - f64::from(y));
-        let corners = [corner(area.x, area.y), corner(area.x + area.width, area.y + area.height)];
+        let corners = [corner(rect.x, rect.y), corner(rect.x + rect.width, rect.y + rect.height)];
         Rectangle::new(corners, shade(logarithm(ns)).filled())
     }))?;
     let mut scale = ChartBuilder::on(&right)
@@ -173,7 +173,7 @@ mod tests {
     use rayweave_measure::timeline::Lane;
 
     fn piece((x, y, width, height): (u32, u32, u32, u32), ns: u64) -> Piece {
-        Piece { area: Area { x, y, width, height }, begin_ns: 100, end_ns: 100 + ns }
+        Piece { rect: Rect { x, y, width, height }, begin_ns: 100, end_ns: 100 + ns }
     }
 
     fn timeline(lanes: [Vec<Piece>; 2]) -> Timeline {
@@ -194,7 +194,7 @@ mod tests {
     #[test]
     fn few_pieces_are_cells_and_many_are_summed_up() {
         let few = timeline([vec![piece((0, 0, 2, 3), 12)], vec![piece((2, 0, 1, 1), 5)]]);
-        let cell = |x, y, width, height, ns| Cell { area: Area { x, y, width, height }, ns };
+        let cell = |x, y, width, height, ns| Cell { rect: Rect { x, y, width, height }, ns };
         assert_eq!(cells(&few, (3, 3)), [cell(0, 0, 2, 3, 2.0), cell(2, 0, 1, 1, 5.0)]);
 
         // 201 x 101 pixels: squares of two, the last column and row cut off. A pixel takes its x.

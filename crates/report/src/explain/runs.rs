@@ -1,12 +1,12 @@
 //! A time line short enough to look at: single pixels, one after the other, become runs.
 
-use rayweave_contract::Area;
+use rayweave_contract::Rect;
 use rayweave_measure::timeline::{Lane, Piece};
 
 /// A piece, or pixels that a thread computed from left to right without a long gap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Run {
-    pub(super) area: Area,
+    pub(super) rect: Rect,
     pub(super) begin_ns: u64,
     pub(super) end_ns: u64,
     /// Of this the time on pieces.
@@ -27,16 +27,16 @@ pub(super) fn of(lane: &Lane, long_gap_ns: f64) -> Vec<Run> {
 }
 
 impl Run {
-    fn is_continued_by(&self, &Piece { area, begin_ns, .. }: &Piece, long_gap_ns: f64) -> bool {
+    fn is_continued_by(&self, &Piece { rect, begin_ns, .. }: &Piece, long_gap_ns: f64) -> bool {
         // A run of pixels has as many pieces as pixels.
-        let pixels = u64::from(self.area.width) == self.pieces && self.area.height == 1;
-        let next = (area.x, area.y) == (self.area.x + self.area.width, self.area.y);
+        let pixels = u64::from(self.rect.width) == self.pieces && self.rect.height == 1;
+        let next = (rect.x, rect.y) == (self.rect.x + self.rect.width, self.rect.y);
         let gap_ns = begin_ns.saturating_sub(self.end_ns);
-        pixels && next && (area.width, area.height) == (1, 1) && gap_ns as f64 <= long_gap_ns
+        pixels && next && (rect.width, rect.height) == (1, 1) && gap_ns as f64 <= long_gap_ns
     }
 
     fn append(&mut self, piece: &Piece) {
-        self.area.width += 1;
+        self.rect.width += 1;
         self.end_ns = piece.end_ns;
         self.busy_ns += piece.ns();
         self.pieces += 1;
@@ -45,8 +45,8 @@ impl Run {
 
 impl From<&Piece> for Run {
     fn from(piece: &Piece) -> Self {
-        let &Piece { area, begin_ns, end_ns } = piece;
-        Self { area, begin_ns, end_ns, busy_ns: piece.ns(), pieces: 1 }
+        let &Piece { rect, begin_ns, end_ns } = piece;
+        Self { rect, begin_ns, end_ns, busy_ns: piece.ns(), pieces: 1 }
     }
 }
 
@@ -55,7 +55,7 @@ mod tests {
     use super::*;
 
     fn piece((x, y, width, height): (u32, u32, u32, u32), begin_ns: u64, end_ns: u64) -> Piece {
-        Piece { area: Area { x, y, width, height }, begin_ns, end_ns }
+        Piece { rect: Rect { x, y, width, height }, begin_ns, end_ns }
     }
 
     /// Catches runs over a row's end, over a long gap, backwards, and of pieces that are not
@@ -74,8 +74,8 @@ mod tests {
             piece((9, 1, 1, 1), 43, 44),
         ];
         let runs = of(&Lane { name: None, pieces: pieces.clone() }, 5.0);
-        let area = Area { x: 3, y: 0, width: 3, height: 1 };
-        assert_eq!(runs[0], Run { area, begin_ns: 0, end_ns: 29, busy_ns: 24, pieces: 3 });
+        let rect = Rect { x: 3, y: 0, width: 3, height: 1 };
+        assert_eq!(runs[0], Run { rect, begin_ns: 0, end_ns: 29, busy_ns: 24, pieces: 3 });
         assert_eq!(runs[1..], pieces[3..].iter().map(Run::from).collect::<Vec<_>>());
     }
 }

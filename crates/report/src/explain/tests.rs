@@ -3,7 +3,7 @@
 
 use super::*;
 use crate::compare::tests::noise;
-use rayweave_contract::Area;
+use rayweave_contract::Rect;
 use rayweave_measure::Interval;
 use rayweave_measure::efficiency::{Account, Losses};
 use rayweave_measure::timeline::{self, Piece};
@@ -20,7 +20,7 @@ fn account(threads: usize, [busy, between, waiting, serial]: [f64; 4]) -> Accoun
 }
 
 fn piece((x, y, width, height): (u32, u32, u32, u32), begin_ns: u64, end_ns: u64) -> Piece {
-    Piece { area: Area { x, y, width, height }, begin_ns, end_ns }
+    Piece { rect: Rect { x, y, width, height }, begin_ns, end_ns }
 }
 
 fn row(strategy: &'static str, threads: usize, together: Account, lanes: Vec<Lane>) -> Row {
@@ -69,7 +69,7 @@ fn explanation() -> Explanation {
 fn with_report<T>(check: impl FnOnce(&Report<'_>) -> T) -> T {
     let (machine, noise) = (Machine::here(), noise());
     let explanation = explanation();
-    let rays = |area: Area| Some(u64::from(area.width * area.height) + 1);
+    let rays = |rect: Rect| Some(u64::from(rect.width * rect.height) + 1);
     check(&Report {
         scene: "room",
         size: (8, 4),

@@ -85,7 +85,7 @@ fn events(pid: usize, row: &Row) -> Vec<Event<'_>> {
 }
 
 fn slice(pid: usize, tid: usize, run: &runs::Run) -> Event<'static> {
-    let runs::Run { area, begin_ns, end_ns, busy_ns, pieces } = *run;
+    let runs::Run { rect, begin_ns, end_ns, busy_ns, pieces } = *run;
     Event {
         name: if pieces > 1 { "pixels" } else { "piece" },
         ph: Phase::Complete,
@@ -94,11 +94,11 @@ fn slice(pid: usize, tid: usize, run: &runs::Run) -> Event<'static> {
         ts: microseconds(begin_ns),
         dur: Some(microseconds(end_ns.saturating_sub(begin_ns))),
         args: Arguments::Piece {
-            x: area.x,
-            y: area.y,
-            width: area.width,
-            height: area.height,
-            pixels: u64::from(area.width) * u64::from(area.height),
+            x: rect.x,
+            y: rect.y,
+            width: rect.width,
+            height: rect.height,
+            pixels: u64::from(rect.width) * u64::from(rect.height),
             pieces,
             busy_us: microseconds(busy_ns),
         },

@@ -1,6 +1,6 @@
 use super::*;
 use crate::compare::tests::noise;
-use rayweave_contract::{Dealing, Delivery, Image, Piece, Rule, ThreadsStart};
+use rayweave_contract::{Granularity, Image, Output, Policy, Scheduling, Threads};
 use rayweave_measure::compare::{Figures, Role, Row};
 use rayweave_measure::forecast::{Curve, Point};
 use rayweave_measure::{Comparison, Interval};
@@ -13,8 +13,12 @@ fn wrong() -> Row {
         strategy: "lock",
         threads: 1,
         role: Role::Contender,
-        threads_start: ThreadsStart::Render,
-        rule: Rule { piece: Piece::Tile, dealing: Dealing::Equal, delivery: Delivery::Locked },
+        threads_start: Threads::PerRender,
+        policy: Policy {
+            granularity: Granularity::Tile,
+            scheduling: Scheduling::Static,
+            output: Output::Mutex,
+        },
         identical: false,
         digest: Some(Image::new(1, 1).expect("a picture").digest()),
         error: None,
@@ -38,7 +42,7 @@ fn reference() -> Row {
     Row {
         strategy: "alone",
         role: Role::Reference,
-        threads_start: ThreadsStart::Never,
+        threads_start: Threads::None,
         identical: true,
         figures: Some(figures),
         ..wrong()

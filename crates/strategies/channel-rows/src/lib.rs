@@ -11,8 +11,8 @@
 //!   nobody knows beforehand, or go to a file or a window that one thread owns.
 
 use rayweave_contract::{
-    Dealing, Delivery, Image, Piece, Plan, Renderer, Rgb, Rule, Strategy, StrategyError,
-    ThreadsStart, Tile, Work,
+    Granularity, Image, Output, Plan, Policy, Renderer, Rgb, Scheduling, Strategy, StrategyError,
+    Threads, Tile, Work,
 };
 use rayweave_thread_team as thread_team;
 use std::iter;
@@ -35,12 +35,16 @@ impl Strategy for ChannelRows {
         "threads take the next row and send it to the caller's thread, which copies it"
     }
 
-    fn threads_start(&self) -> ThreadsStart {
-        ThreadsStart::Render
+    fn threads(&self) -> Threads {
+        Threads::PerRender
     }
 
-    fn rule(&self) -> Rule {
-        Rule { piece: Piece::Row, dealing: Dealing::Shared { chunk: 1 }, delivery: Delivery::Sent }
+    fn policy(&self) -> Policy {
+        Policy {
+            granularity: Granularity::Row,
+            scheduling: Scheduling::Dynamic { chunk: 1 },
+            output: Output::Channel,
+        }
     }
 
     fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {

@@ -7,12 +7,12 @@
 //!   picture.
 //! * **When it is right**: when results go into something that cannot be cut into disjoint parts,
 //!   such as a map or a file. Beside `mutex-image` it shows that a lock costs by how often it is
-//!   taken; what is left is the price of dealing out beforehand.
+//!   taken; what is left is the price of fixed shares.
 
 use parking_lot::Mutex;
 use rayweave_contract::{
-    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart,
-    Tile, Work,
+    Granularity, Image, Output, Plan, Policy, Renderer, Scheduling, Strategy, StrategyError,
+    Threads, Tile, Work,
 };
 use rayweave_thread_team as thread_team;
 use std::num::NonZeroUsize;
@@ -32,12 +32,16 @@ impl Strategy for MutexRows {
         "an equal share of the rows a thread, one lock around the picture taken for each row"
     }
 
-    fn threads_start(&self) -> ThreadsStart {
-        ThreadsStart::Render
+    fn threads(&self) -> Threads {
+        Threads::PerRender
     }
 
-    fn rule(&self) -> Rule {
-        Rule { piece: Piece::Row, dealing: Dealing::Equal, delivery: Delivery::Locked }
+    fn policy(&self) -> Policy {
+        Policy {
+            granularity: Granularity::Row,
+            scheduling: Scheduling::Static,
+            output: Output::Mutex,
+        }
     }
 
     fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {

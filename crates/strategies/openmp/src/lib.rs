@@ -17,7 +17,7 @@
 //! unavailable, and say what was missing.
 
 use rayweave_contract::{
-    Dealing, Delivery, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart,
+    Granularity, Output, Plan, Policy, Renderer, Scheduling, Strategy, StrategyError, Threads,
 };
 
 #[cfg(openmp)]
@@ -61,17 +61,17 @@ impl Strategy for OpenMp {
         }
     }
 
-    fn threads_start(&self) -> ThreadsStart {
-        ThreadsStart::Prepare
+    fn threads(&self) -> Threads {
+        Threads::Pool
     }
 
-    fn rule(&self) -> Rule {
-        let dealing = match self.0 {
-            Schedule::Static => Dealing::Equal,
-            Schedule::Dynamic => Dealing::Shared { chunk: 1 },
-            Schedule::Guided => Dealing::Guided,
+    fn policy(&self) -> Policy {
+        let scheduling = match self.0 {
+            Schedule::Static => Scheduling::Static,
+            Schedule::Dynamic => Scheduling::Dynamic { chunk: 1 },
+            Schedule::Guided => Scheduling::Guided,
         };
-        Rule { piece: Piece::Tile, dealing, delivery: Delivery::InPlace }
+        Policy { granularity: Granularity::Tile, scheduling, output: Output::InPlace }
     }
 
     fn unavailable(&self) -> Option<&'static str> {

@@ -15,8 +15,8 @@
 use paralight::prelude::*;
 use paralight::threads::ThreadPool;
 use rayweave_contract::{
-    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart,
-    Work, render_tile,
+    Granularity, Image, Output, Plan, Policy, Renderer, Scheduling, Strategy, StrategyError,
+    Threads, Work, render_tile,
 };
 use rayweave_thread_team as thread_team;
 use std::num::NonZeroU32;
@@ -36,12 +36,16 @@ impl Strategy for ParalightTiles {
         "paralight: an equal range of the tiles a thread; who is idle takes half of another's"
     }
 
-    fn threads_start(&self) -> ThreadsStart {
-        ThreadsStart::Prepare
+    fn threads(&self) -> Threads {
+        Threads::Pool
     }
 
-    fn rule(&self) -> Rule {
-        Rule { piece: Piece::Tile, dealing: Dealing::Stealing, delivery: Delivery::InPlace }
+    fn policy(&self) -> Policy {
+        Policy {
+            granularity: Granularity::Tile,
+            scheduling: Scheduling::WorkStealing,
+            output: Output::InPlace,
+        }
     }
 
     fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {

@@ -14,8 +14,8 @@
 use rayon::ThreadPool;
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
 use rayweave_contract::{
-    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart,
-    Tile, Work, render_tile,
+    Granularity, Image, Output, Plan, Policy, Renderer, Scheduling, Strategy, StrategyError,
+    Threads, Tile, Work, render_tile,
 };
 
 const NAME: &str = "rayon-pixels";
@@ -33,12 +33,16 @@ impl Strategy for RayonPixels {
         "one rayon item a pixel, halves of the range stolen by idle threads"
     }
 
-    fn threads_start(&self) -> ThreadsStart {
-        ThreadsStart::Prepare
+    fn threads(&self) -> Threads {
+        Threads::Pool
     }
 
-    fn rule(&self) -> Rule {
-        Rule { piece: Piece::Pixel, dealing: Dealing::Halving, delivery: Delivery::InPlace }
+    fn policy(&self) -> Policy {
+        Policy {
+            granularity: Granularity::Pixel,
+            scheduling: Scheduling::RecursiveSplit,
+            output: Output::InPlace,
+        }
     }
 
     fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {

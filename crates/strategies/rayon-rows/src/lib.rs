@@ -15,8 +15,8 @@ use rayon::ThreadPool;
 use rayon::iter::{IndexedParallelIterator, ParallelIterator};
 use rayon::slice::ParallelSliceMut;
 use rayweave_contract::{
-    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart,
-    Tile, Work, render_tile,
+    Granularity, Image, Output, Plan, Policy, Renderer, Scheduling, Strategy, StrategyError,
+    Threads, Tile, Work, render_tile,
 };
 
 const NAME: &str = "rayon-rows";
@@ -38,12 +38,16 @@ impl Strategy for RayonRows {
         "one rayon item a row, halves of the range stolen by idle threads"
     }
 
-    fn threads_start(&self) -> ThreadsStart {
-        ThreadsStart::Prepare
+    fn threads(&self) -> Threads {
+        Threads::Pool
     }
 
-    fn rule(&self) -> Rule {
-        Rule { piece: Piece::Row, dealing: Dealing::Halving, delivery: Delivery::InPlace }
+    fn policy(&self) -> Policy {
+        Policy {
+            granularity: Granularity::Row,
+            scheduling: Scheduling::RecursiveSplit,
+            output: Output::InPlace,
+        }
     }
 
     fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {

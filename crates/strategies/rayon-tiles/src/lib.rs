@@ -15,8 +15,8 @@
 use rayon::ThreadPool;
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
 use rayweave_contract::{
-    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart,
-    Work, render_tile,
+    Granularity, Image, Output, Plan, Policy, Renderer, Scheduling, Strategy, StrategyError,
+    Threads, Work, render_tile,
 };
 use std::num::NonZeroU32;
 
@@ -38,12 +38,16 @@ impl Strategy for RayonTiles {
         "one rayon item a tile, halves of the list stolen by idle threads"
     }
 
-    fn threads_start(&self) -> ThreadsStart {
-        ThreadsStart::Prepare
+    fn threads(&self) -> Threads {
+        Threads::Pool
     }
 
-    fn rule(&self) -> Rule {
-        Rule { piece: Piece::Tile, dealing: Dealing::Halving, delivery: Delivery::InPlace }
+    fn policy(&self) -> Policy {
+        Policy {
+            granularity: Granularity::Tile,
+            scheduling: Scheduling::RecursiveSplit,
+            output: Output::InPlace,
+        }
     }
 
     fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {

@@ -13,8 +13,8 @@
 
 use parking_lot::Mutex;
 use rayweave_contract::{
-    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart,
-    Tile, Work,
+    Granularity, Image, Output, Plan, Policy, Renderer, Scheduling, Strategy, StrategyError,
+    Threads, Tile, Work,
 };
 use rayweave_thread_team as thread_team;
 use std::iter;
@@ -36,15 +36,15 @@ impl Strategy for RowCounter {
         "threads take the next row by one atomic counter"
     }
 
-    fn threads_start(&self) -> ThreadsStart {
-        ThreadsStart::Render
+    fn threads(&self) -> Threads {
+        Threads::PerRender
     }
 
-    fn rule(&self) -> Rule {
-        Rule {
-            piece: Piece::Row,
-            dealing: Dealing::Shared { chunk: 1 },
-            delivery: Delivery::InPlace,
+    fn policy(&self) -> Policy {
+        Policy {
+            granularity: Granularity::Row,
+            scheduling: Scheduling::Dynamic { chunk: 1 },
+            output: Output::InPlace,
         }
     }
 

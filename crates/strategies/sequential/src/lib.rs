@@ -7,8 +7,8 @@
 //!   microseconds), or when the cores are busy with other pictures already.
 
 use rayweave_contract::{
-    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart,
-    Work, render_tile,
+    Granularity, Image, Output, Plan, Policy, Renderer, Scheduling, Strategy, StrategyError,
+    Threads, Work, render_tile,
 };
 use std::num::NonZeroU32;
 
@@ -27,12 +27,16 @@ impl Strategy for Sequential {
         "one thread, tile after tile: the reference"
     }
 
-    fn threads_start(&self) -> ThreadsStart {
-        ThreadsStart::Never
+    fn threads(&self) -> Threads {
+        Threads::None
     }
 
-    fn rule(&self) -> Rule {
-        Rule { piece: Piece::Tile, dealing: Dealing::Equal, delivery: Delivery::InPlace }
+    fn policy(&self) -> Policy {
+        Policy {
+            granularity: Granularity::Tile,
+            scheduling: Scheduling::Static,
+            output: Output::InPlace,
+        }
     }
 
     fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {

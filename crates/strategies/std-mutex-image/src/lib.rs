@@ -9,8 +9,8 @@
 //!   of a lock is worth a thought.
 
 use rayweave_contract::{
-    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart,
-    Tile, Work,
+    Granularity, Image, Output, Plan, Policy, Renderer, Scheduling, Strategy, StrategyError,
+    Threads, Tile, Work,
 };
 use rayweave_thread_team as thread_team;
 use std::num::NonZeroUsize;
@@ -31,12 +31,16 @@ impl Strategy for StdMutexImage {
         "as mutex-image, with the standard library's lock"
     }
 
-    fn threads_start(&self) -> ThreadsStart {
-        ThreadsStart::Render
+    fn threads(&self) -> Threads {
+        Threads::PerRender
     }
 
-    fn rule(&self) -> Rule {
-        Rule { piece: Piece::Pixel, dealing: Dealing::Equal, delivery: Delivery::Locked }
+    fn policy(&self) -> Policy {
+        Policy {
+            granularity: Granularity::Pixel,
+            scheduling: Scheduling::Static,
+            output: Output::Mutex,
+        }
     }
 
     fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {

@@ -13,8 +13,8 @@
 
 use crossbeam::queue::ArrayQueue;
 use rayweave_contract::{
-    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart,
-    Work,
+    Granularity, Image, Output, Plan, Policy, Renderer, Scheduling, Strategy, StrategyError,
+    Threads, Work,
 };
 use rayweave_thread_team as thread_team;
 use std::iter;
@@ -34,15 +34,15 @@ impl Strategy for TileQueue {
         "threads pop tiles from a lock-free queue and write the tile's rows without a lock"
     }
 
-    fn threads_start(&self) -> ThreadsStart {
-        ThreadsStart::Render
+    fn threads(&self) -> Threads {
+        Threads::PerRender
     }
 
-    fn rule(&self) -> Rule {
-        Rule {
-            piece: Piece::Tile,
-            dealing: Dealing::Shared { chunk: 1 },
-            delivery: Delivery::InPlace,
+    fn policy(&self) -> Policy {
+        Policy {
+            granularity: Granularity::Tile,
+            scheduling: Scheduling::Dynamic { chunk: 1 },
+            output: Output::InPlace,
         }
     }
 

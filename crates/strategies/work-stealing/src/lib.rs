@@ -2,7 +2,7 @@
 //!
 //! * **What it decides**: a first share for each thread, an equal range of the tiles. A thread
 //!   takes its own from the front; whoever is idle takes half of another's from the back.
-//! * **What it costs**: cutting the picture into tiles and dealing them out, starting the threads
+//! * **What it costs**: cutting the picture into tiles and queueing them, starting the threads
 //!   within every rendering, and at the end up to one tile's time of waiting. A tile of one's own
 //!   costs no more than a few ns, whatever the other threads do; a theft some 100 ns.
 //! * **When it is right**: for uneven work on many threads, where one queue would be what they all
@@ -14,8 +14,8 @@
 
 use crossbeam::deque::{Steal, Stealer, Worker};
 use rayweave_contract::{
-    Dealing, Delivery, Image, Piece, Plan, Renderer, Rule, Strategy, StrategyError, ThreadsStart,
-    Tile, Work,
+    Granularity, Image, Output, Plan, Policy, Renderer, Scheduling, Strategy, StrategyError,
+    Threads, Tile, Work,
 };
 use rayweave_thread_team as thread_team;
 
@@ -34,12 +34,16 @@ impl Strategy for WorkStealing {
         "an equal range of the tiles a thread; who is idle steals half of another's"
     }
 
-    fn threads_start(&self) -> ThreadsStart {
-        ThreadsStart::Render
+    fn threads(&self) -> Threads {
+        Threads::PerRender
     }
 
-    fn rule(&self) -> Rule {
-        Rule { piece: Piece::Tile, dealing: Dealing::Stealing, delivery: Delivery::InPlace }
+    fn policy(&self) -> Policy {
+        Policy {
+            granularity: Granularity::Tile,
+            scheduling: Scheduling::WorkStealing,
+            output: Output::InPlace,
+        }
     }
 
     fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {

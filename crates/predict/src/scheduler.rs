@@ -1,12 +1,12 @@
-//! Who gets which pieces: each [`Dealing`] as an answer to a thread that asks for more.
+//! Who gets which pieces: each [`Scheduling`] as an answer to a thread that asks for more.
 
-use rayweave_contract::Dealing;
+use rayweave_contract::Scheduling;
 use std::collections::VecDeque;
 use std::ops::Range;
 
 /// What a thread got.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Grant {
+pub(crate) struct Chunk {
     /// Nobody else gets these any more.
     pub(crate) pieces: Range<usize>,
     pub(crate) source: Source,
@@ -27,12 +27,12 @@ pub(crate) enum Source {
 
 /// Pieces that are left, by whom they belong to.
 #[derive(Debug)]
-pub(crate) enum Dealer {
-    Equal(Vec<Range<usize>>),
-    Shared { left: Range<usize>, chunk: usize },
+pub(crate) enum Scheduler {
+    Static(Vec<Range<usize>>),
+    Dynamic { left: Range<usize>, chunk: usize },
     Guided { left: Range<usize>, threads: usize },
-    Stealing(Vec<Range<usize>>),
-    Halving(Vec<VecDeque<Part>>),
+    WorkStealing(Vec<Range<usize>>),
+    RecursiveSplit(Vec<VecDeque<Part>>),
 }
 
 /// A range that may still be halved so often.
@@ -42,41 +42,41 @@ pub(crate) struct Part {
     splits: usize,
 }
 
-impl Dealer {
-    pub(crate) fn new(dealing: Dealing, threads: usize, pieces: usize) -> Self {
+impl Scheduler {
+    pub(crate) fn new(scheduling: Scheduling, threads: usize, pieces: usize) -> Self {
         let shares =
             || (0..threads).map(|i| pieces * i / threads..pieces * (i + 1) / threads).collect();
-        match dealing {
-            Dealing::Equal => Self::Equal(shares()),
-            Dealing::Shared { chunk } => Self::Shared { left: 0..pieces, chunk: chunk.max(1) },
-            Dealing::Guided => Self::Guided { left: 0..pieces, threads },
-            Dealing::Stealing => Self::Stealing(shares()),
-            Dealing::Halving => {
+        match scheduling {
+            Scheduling::Static => Self::Static(shares()),
+            Scheduling::Dynamic { chunk } => Self::Dynamic { left: 0..pieces, chunk: chunk.max(1) },
+            Scheduling::Guided => Self::Guided { left: 0..pieces, threads },
+            Scheduling::WorkStealing => Self::WorkStealing(shares()),
+            Scheduling::RecursiveSplit => {
                 let mut queues = vec![VecDeque::new(); threads];
                 queues[0].push_back(Part { pieces: 0..pieces, splits: threads });
-                Self::Halving(queues)
+                Self::RecursiveSplit(queues)
             }
         }
     }
 
     /// What `thread` gets when it asks; `None` if there is nothing for it at the moment.
-    pub(crate) fn next(&mut self, thread: usize) -> Option<Grant> {
+    pub(crate) fn next(&mut self, thread: usize) -> Option<Chunk> {
         let mut laid_out = false;
         let (pieces, source) = match self {
-            Self::Equal(shares) => (std::mem::take(&mut shares[thread]), Source::Own),
-            Self::Shared { left, chunk } => (take_front(left, *chunk), Source::Shared),
+            Self::Static(shares) => (std::mem::take(&mut shares[thread]), Source::Own),
+            Self::Dynamic { left, chunk } => (take_front(left, *chunk), Source::Shared),
             Self::Guided { left, threads } => {
                 let count = left.len().div_ceil(*threads);
                 (take_front(left, count), Source::Shared)
             }
-            Self::Stealing(shares) => steal(shares, thread),
-            Self::Halving(queues) => {
-                let granted = halve(queues, thread)?;
+            Self::WorkStealing(shares) => steal(shares, thread),
+            Self::RecursiveSplit(queues) => {
+                let chunk = halve(queues, thread)?;
                 laid_out = !queues[thread].is_empty();
-                granted
+                chunk
             }
         };
-        (!pieces.is_empty()).then_some(Grant { pieces, source, laid_out })
+        (!pieces.is_empty()).then_some(Chunk { pieces, source, laid_out })
     }
 }
 
