@@ -44,7 +44,7 @@ fn strategies(criterion: &mut Criterion) {
                 group.bench_function(BenchmarkId::new(strategy.name(), threads), |bencher| {
                     ran = true;
                     bencher.iter(|| {
-                        renderer.render(&*load.work, &mut image).expect("the work does not fail")
+                        renderer.render(&*load.work, &mut image).expect("the work does not fail");
                     });
                 });
                 // What was timed is looked at, outside of the timing; a filter may have left it

@@ -118,7 +118,7 @@ fn scene_of(primitive: &Primitive) -> Scene {
             material,
         }),
         Primitive::Mesh { ref triangles } => {
-            scene.triangles.extend(triangles.iter().copied().map(triangle))
+            scene.triangles.extend(triangles.iter().copied().map(triangle));
         }
     }
     scene.triangles.retain(|triangle| triangle.check().is_ok());

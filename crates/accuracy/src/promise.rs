@@ -10,11 +10,10 @@
 //! * In f32 the same, with the epsilon of f32, where the products of a few of the numbers stay
 //!   within its range:
 //!
-//! - the radius, and each coordinate of each difference of two positions, is 0 or of a magnitude in
-//!     [`LENGTHS`];
-//! - the longest component of the direction is of a magnitude in [`DIRECTIONS`], and the others,
-//! like
-//!     those of a normal, are 0 or at least [`FLATTEST`] of the longest.
+//!   - the radius, and each coordinate of each difference of two positions, is 0 or of a magnitude
+//!     in [`LENGTHS`];
+//!   - the longest component of the direction is of a magnitude in [`DIRECTIONS`], and the others,
+//!     like those of a normal, are 0 or at least [`FLATTEST`] of the longest.
 //!
 //! Decidable is what the oracle calls so, with two exceptions:
 //!

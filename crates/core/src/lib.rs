@@ -1,10 +1,8 @@
-//! The tracer, and the contract by which work and strategy know nothing of each other.
+//! The tracer: a [`Scene`] as [`Work`](rayweave_contract::Work).
 //!
-//! * The contract: [`Image`] and [`Tile`], [`Work`], [`Strategy`].
-//! * What is drawn: [`Scene`], in `f64`.
-//! * The tracer: [`tracer()`] turns a scene into [`Work`]. Inside, a formula is written once over a
-//!   number type (`lane`); `primitives` finds what a ray hits, `trace` what colour that gives,
-//!   `tracer` filters samples into pixels.
+//! * [`Scene`] says what is drawn, in `f64`; [`tracer()`] turns it into work.
+//! * Inside, a formula is written once over a number type (`lane`); `primitives` finds what a ray
+//!   hits, `trace` the colour that the ray brings back, and `tracer` filters samples into pixels.
 //!
 //! This crate starts no thread, opens no file and reads no clock.
 

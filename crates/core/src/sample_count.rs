@@ -4,10 +4,10 @@ use crate::scene::RenderSettings;
 
 /// The primary rays that the tracer follows for a tile of `width` x `height` pixels.
 ///
-/// On a lattice of density `s` a tile that shares its samples takes `(s (width + 1) + 1) (s (height
-/// + 1) + 1)` of them: `s` steps a pixel, and half a pixel more on each side, for the filter
-/// reaches into the neighbours. What neighbouring tiles have in common each of them traces for
-/// itself, so the smaller the tiles of a picture, the more rays: the least is a single tile, the
+/// On a lattice of density `s` a tile that shares its samples takes
+/// `(s (width + 1) + 1) (s (height + 1) + 1)` of them: `s` steps a pixel, and half a pixel more on
+/// each side, because the filter reaches into the neighbours. Each tile traces for itself what it
+/// has in common with its neighbours, so smaller tiles need more rays: the least is a single tile, the
 /// most a tile for each pixel, which is as if nothing were shared.
 ///
 /// Without sharing, and where no two pixels have a sample in common (one ray a pixel, or [by

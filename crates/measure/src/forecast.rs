@@ -143,7 +143,7 @@ impl Question<'_> {
             return Err(ForecastError::Nothing);
         }
         let overheads = calibrate(self.reference, &strategies, self.available, |done| {
-            progress(Stage::Overheads, done)
+            progress(Stage::Overheads, done);
         })
         .map_err(ForecastError::Strategy)?;
         let here: Vec<NonZeroUsize> =
@@ -166,7 +166,7 @@ impl Question<'_> {
         let entries: Vec<Entry<'_>> = timed.chain(beside).chain(alone).collect();
         let mut stopwatch = Stopwatch::new(self.work, self.size.0, self.size.1, self.tile)?;
         let comparison = self.protocol.run(self.reference, &entries, &mut stopwatch, |at| {
-            progress(Stage::Renderings, at.fraction)
+            progress(Stage::Renderings, at.fraction);
         })?;
 
         let Some(reference) = comparison.reference_ns() else {

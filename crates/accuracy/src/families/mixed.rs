@@ -135,7 +135,7 @@ fn spoil(primitive: &mut Primitive, axis: usize, bad: f32, position: bool) {
         Primitive::Sphere { radius, .. } | Primitive::Cylinder { radius, .. } => *radius = bad,
         Primitive::Triangle { c: at, .. } => at[axis] = bad,
         Primitive::Mesh { triangles } => {
-            triangles.iter_mut().for_each(|triangle| triangle[0][axis] = bad)
+            triangles.iter_mut().for_each(|triangle| triangle[0][axis] = bad);
         }
     }
 }
