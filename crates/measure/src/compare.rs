@@ -25,6 +25,8 @@ mod noise_tests;
 mod row;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod together_tests;
 
 pub use row::{Figures, OneShot, Role, Row};
 

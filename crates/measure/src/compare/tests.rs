@@ -4,7 +4,6 @@ use super::*;
 use rayweave_contract::{
     Granularity, Image, Output, Plan, Policy, Renderer, Scheduling, StrategyError, Threads,
 };
-use std::cell::RefCell;
 
 /// Never asked to render: the executor makes up what it would do.
 pub(super) struct Named(pub &'static str, Threads);
@@ -36,7 +35,7 @@ impl Strategy for Named {
 }
 
 pub(super) static REFERENCE: Named = Named("reference", Threads::None);
-static POOL: Named = Named("pool", Threads::Pool);
+pub(super) static POOL: Named = Named("pool", Threads::Pool);
 pub(super) static QUEUE: Named = Named("queue", Threads::PerRender);
 
 /// Answers the n-th call of a strategy by a function of its name and n, and moves the clock by the
@@ -83,7 +82,7 @@ pub(super) fn right(render_ns: u64) -> Result<Rendering, String> {
     Ok(Rendering { sample, digest: picture(1.0), first_digest: None })
 }
 
-fn wrong(render_ns: u64) -> Result<Rendering, String> {
+pub(super) fn wrong(render_ns: u64) -> Result<Rendering, String> {
     right(render_ns).map(|rendering| Rendering { digest: picture(0.5), ..rendering })
 }
 
@@ -355,103 +354,4 @@ fn rays_are_those_of_a_right_picture_in_the_warm_up() {
 
     let comparison = run(protocol(1, 1, 0), &mut fake(|_, _| right(1)));
     assert!(comparison.rows.iter().all(|row| row.rays.is_none()), "nobody counted");
-}
-
-/// One of several executors: notes its calls where the others do, and moves the clock of all.
-struct Part<'a, F> {
-    number: usize,
-    calls: &'a RefCell<Vec<(usize, &'static str)>>,
-    answer: F,
-}
-
-impl<F: FnMut(&'static str, usize) -> Result<Rendering, String>> Executor for Part<'_, F> {
-    fn render(&mut self, entry: &Entry<'_>) -> Result<Rendering, String> {
-        let call = (self.number, entry.strategy.name());
-        let before = self.calls.borrow().iter().filter(|&&earlier| earlier == call).count();
-        self.calls.borrow_mut().push(call);
-        (self.answer)(call.1, before)
-    }
-
-    fn elapsed(&self) -> Duration {
-        Duration::from_nanos(self.calls.borrow().len() as u64)
-    }
-}
-
-type Calls = Vec<(usize, &'static str)>;
-
-/// Two executors together, for some rounds, with the pool beside the reference.
-fn together(
-    rounds: usize,
-    first: impl FnMut(&'static str, usize) -> Result<Rendering, String>,
-    second: impl FnMut(&'static str, usize) -> Result<Rendering, String>,
-) -> ([Comparison; 2], Calls) {
-    let calls = RefCell::default();
-    let mut first = Part { number: 0, calls: &calls, answer: first };
-    let mut second = Part { number: 1, calls: &calls, answer: second };
-    let comparisons = protocol(rounds, rounds, u64::MAX)
-        .run_together(&REFERENCE, &[entry(&POOL, 2)], &mut [&mut first, &mut second], |_| {})
-        .expect("a reference picture");
-    (comparisons.try_into().expect("two comparisons"), calls.into_inner())
-}
-
-#[test]
-fn together_each_round_has_the_rows_of_all() {
-    let (comparisons, calls) = together(8, |_, _| right(1), |_, _| right(1));
-    let (before, measured) = calls.split_at(1 + 6);
-    assert_eq!(before[0], (0, "reference"));
-    for round in measured.chunks(6) {
-        let mut round = round.to_vec();
-        round.sort_unstable();
-        let rows = ["pool", "reference", "reference"];
-        let expected: Calls =
-            [0, 1].into_iter().flat_map(|number| rows.map(|name| (number, name))).collect();
-        assert_eq!(round, expected);
-    }
-    let apart = |round: &[(usize, &str)]| round.is_sorted_by_key(|(number, _)| *number);
-    assert!(!measured.chunks(6).all(apart), "one after the other: {measured:?}");
-    for comparison in comparisons {
-        assert_eq!((comparison.rounds, comparison.rows.len(), comparison.holds()), (8, 3, true));
-        assert!(comparison.rows.iter().all(|row| row.samples.len() == 8));
-    }
-}
-
-#[test]
-fn a_gain_is_the_median_of_the_ratios_within_a_round() {
-    // Rounds slow down by a factor that all share; the first's reference is called once more, for
-    // the picture.
-    let slow = |name, call: usize, first| match name {
-        "reference" => 1000 << (call.saturating_sub(first) / 2),
-        _ => 1,
-    };
-    let ([a, b], _) = together(
-        5,
-        |name, call| right(slow(name, call, 3)),
-        |name, call| right(3 * slow(name, call, 2)),
-    );
-    assert_eq!(a.gain_over(&b), Some(Interval { median: 3.0, low: 3.0, high: 3.0 }));
-    let third = b.gain_over(&a).expect("both have figures");
-    assert_eq!((third.low, third.high), (1.0 / 3.0, 1.0 / 3.0));
-}
-
-#[test]
-fn together_all_have_to_give_the_first_s_picture() {
-    let ([a, b], _) = together(3, |_, _| right(1), |_, _| wrong(1));
-    assert!(a.holds() && a.rows[2].figures.is_some());
-    assert!(b.rows.iter().all(|row| !row.identical && row.figures.is_none()));
-    assert_eq!((a.gain_over(&b), b.gain_over(&a)), (None, None));
-}
-
-#[test]
-fn a_reference_that_fails_ends_its_own_comparison() {
-    let fails = |name, call| {
-        if name == "reference" && call >= 6 { Err("gone".to_owned()) } else { right(1) }
-    };
-    let ([a, b], _) = together(6, |_, _| right(1), fails);
-    assert!(a.holds() && a.rows.iter().all(|row| row.samples.len() == 6 && row.figures.is_some()));
-    // Its warm-up and two rounds, each with the reference and its control, then the third.
-    assert!(b.rows.iter().all(|row| (2..=3).contains(&row.samples.len()) && row.figures.is_none()));
-
-    let ([a, b], calls) = together(6, fails, fails);
-    assert!(!a.holds() && !b.holds());
-    assert!(calls.len() <= 1 + 6 + 3 * 6, "measured on without any reference: {}", calls.len());
 }
