@@ -1,6 +1,8 @@
 //! A comparison as table, JSON, CSV and Markdown, and what has changed since an earlier one.
 
 mod baseline;
+#[cfg(test)]
+mod both_tests;
 mod csv;
 mod json;
 mod markdown;
