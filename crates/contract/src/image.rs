@@ -1,8 +1,4 @@
-//! The picture, and the tiles that it is cut into.
-//!
-//! A [`Tile`] is a rectangle together with the row slices that it alone may write. The borrow
-//! checker proves that tiles are disjoint, so threads fill them at the same time without a lock
-//! and without `unsafe`.
+//! The image, its digest, and the cutting of it into tiles.
 
 use crate::tile::Tile;
 use sha2::{Digest as _, Sha256};

@@ -114,7 +114,7 @@ impl Record {
     }
 }
 
-/// What a tile costs, by its rect; `None` if that does not tell.
+/// What a tile costs, by its rectangle; `None` if that does not tell.
 pub type Cost<'a> = dyn Fn(Rect) -> Option<u64> + Sync + 'a;
 
 /// Adds up what the tiles cost that the work inside completes: of any number of tiles a single sum.

@@ -1,4 +1,4 @@
-//! What a strategy's rule makes of more threads than here: a simulation, and the laws fitted to it.
+//! Forecasts of a strategy's policy for more threads: a simulation, and the laws fitted to it.
 //!
 //! * [`simulate`]: replays the costs of pieces under a [`Policy`](rayweave_contract::Policy);
 //! * [`fit`]: Amdahl's law and Gunther's, by least squares.

@@ -1,4 +1,4 @@
-//! A discrete-event simulation of a strategy: the costs of its pieces are replayed under its rule.
+//! A discrete-event simulation of a strategy: the costs of its pieces are replayed under its policy.
 //!
 //! What it leaves out: all threads compute equally fast, each on a core of its own, as does the
 //! owner of the picture that pieces are sent to; whoever waits for a lock gets it in the order of

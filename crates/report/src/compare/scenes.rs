@@ -176,7 +176,7 @@ fn why(report: &Report<'_>, load: &Load) -> String {
         report.comparison.rows.first().and_then(|row| row.figures).map(|figures| figures.median_ns);
     if let Some(ns) = whole.filter(|&ns| ns < FREE_NS) {
         parts.push(format!(
-            "all pixels take {:.2} ms, so starting threads and scheduling out count",
+            "all pixels take {:.2} ms, so starting threads and dealing out count",
             ns / 1e6
         ));
     }
@@ -268,7 +268,7 @@ mod tests {
             "corner: no strategy pays, sequential is first; \
              equal shares of tiles: max over mean cost is 6750.00, so at most 1.33, 0.90 was measured; one tile has \
              75 % of the cost, so whole tiles allow at most 1.33; all pixels take 5.00 ms, so starting threads and \
-             scheduling out count."
+             dealing out count."
         );
     }
 
