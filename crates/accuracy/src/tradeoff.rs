@@ -15,9 +15,9 @@ use crate::metrics::{Difference, rmse};
 use cost::Parts;
 use rayweave_contract::{Digest, Image, Strategy, Work};
 use rayweave_core::{Formulas, Scene};
-use rayweave_measure::compare::{Entry, Executor, Rendering};
+use rayweave_measure::compare::{Entry, Executor};
 use rayweave_measure::statistics::{median, ratio_interval};
-use rayweave_measure::{Interval, Protocol, Stopwatch};
+use rayweave_measure::{InProcessExecutor, Interval, Protocol};
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::time::Instant;
 
@@ -206,11 +206,11 @@ pub fn timed(
     size: (u32, u32),
 ) -> Result<Timed, String> {
     let work = setting.work(scene, size).map_err(|e| e.to_string())?;
-    let mut stopwatch =
-        Stopwatch::new(&*work, size.0, size.1, NonZeroU32::MAX).map_err(|e| e.to_string())?;
-    let Rendering { sample, digest, .. } =
-        stopwatch.render(&Entry { strategy, threads: NonZeroUsize::MIN })?;
-    Ok(Timed { picture: stopwatch.into_picture(), digest, nanoseconds: sample.render_ns })
+    let executor = InProcessExecutor::new(&*work, size.0, size.1, NonZeroU32::MAX);
+    let mut executor = executor.map_err(|e| e.to_string())?;
+    let sample = executor.render(&Entry { strategy, threads: NonZeroUsize::MIN })?;
+    let (digest, nanoseconds) = (sample.digest, sample.render_ns);
+    Ok(Timed { picture: executor.into_image(), digest, nanoseconds })
 }
 
 /// How far a setting's picture is off.

@@ -1,5 +1,6 @@
 //! What a strategy decides: the granularity of its pieces, their scheduling, and their output.
 
+use std::fmt;
 use std::num::NonZeroUsize;
 
 /// What a strategy decides. A simulation goes by the policy alone.
@@ -13,7 +14,7 @@ use std::num::NonZeroUsize;
 ///     scheduling: Scheduling::Dynamic { chunk: 4 },
 ///     output: Output::InPlace,
 /// };
-/// assert_ne!(policy.scheduling, Scheduling::Static);
+/// assert_eq!(policy.scheduling.to_string(), "dynamic,4");
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Policy {
@@ -95,5 +96,54 @@ impl Threads {
     #[must_use]
     pub fn computing_threads(self, requested: NonZeroUsize) -> NonZeroUsize {
         if self == Self::None { NonZeroUsize::MIN } else { requested }
+    }
+}
+
+/// The words of results and tables: `pixel`, `row`, `tile`, `band`.
+impl fmt::Display for Granularity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Pixel => "pixel",
+            Self::Row => "row",
+            Self::Tile => "tile",
+            Self::Band => "band",
+        })
+    }
+}
+
+/// OpenMP's words where it has one: `static`, `dynamic` or `dynamic,4`, `guided`, `work-stealing`,
+/// `recursive-split`.
+impl fmt::Display for Scheduling {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Static => "static",
+            Self::Dynamic { chunk: 1 } => "dynamic",
+            Self::Dynamic { chunk } => return write!(f, "dynamic,{chunk}"),
+            Self::Guided => "guided",
+            Self::WorkStealing => "work-stealing",
+            Self::RecursiveSplit => "recursive-split",
+        })
+    }
+}
+
+/// The words of results and tables: `in-place`, `mutex`, `channel`.
+impl fmt::Display for Output {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::InPlace => "in-place",
+            Self::Mutex => "mutex",
+            Self::Channel => "channel",
+        })
+    }
+}
+
+/// The words of results and tables: `none`, `pool`, `per-render`.
+impl fmt::Display for Threads {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::None => "none",
+            Self::Pool => "pool",
+            Self::PerRender => "per-render",
+        })
     }
 }

@@ -1,18 +1,18 @@
 //! `rayweave`: proves that all strategies draw the same picture, and measures what each costs.
 //!
 //! The glue between the other crates, and the only place that prints: results to standard output,
-//! errors and progress to standard error. Exit status: 0 done and all checks held; 1 a check
+//! errors and progress to standard error. Exit status: 0 done and every check passed; 1 a check
 //! failed; 2 the request or its input was wrong, or the machine cannot meet it; 130 interrupted.
 
-mod child;
 mod commands;
+mod files;
 mod input;
 mod interrupt;
 mod options;
-mod output;
 mod picture;
 mod progress;
-mod watched;
+mod subprocess;
+mod with_noise;
 
 use clap::{Parser, Subcommand};
 use commands::{
@@ -57,12 +57,14 @@ enum Command {
     Intersect(intersect::Arguments),
 }
 
-/// Whether the checks that a command makes held.
+/// The end of a command that had a result.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Outcome {
-    Held,
+    /// Every check passed.
+    Passed,
+    /// A check failed.
     Failed,
-    /// Before all was done.
+    /// The run was interrupted before all was done.
     Interrupted,
 }
 
@@ -84,7 +86,7 @@ fn main() -> ExitCode {
         None => compare::run(None, &cli.compare),
     };
     match result {
-        Ok(Outcome::Held) => ExitCode::SUCCESS,
+        Ok(Outcome::Passed) => ExitCode::SUCCESS,
         Ok(Outcome::Failed) => ExitCode::from(1),
         Ok(Outcome::Interrupted) => ExitCode::from(130),
         Err(message) => {

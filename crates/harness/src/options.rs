@@ -6,6 +6,7 @@ use rayweave_contract::Strategy;
 use rayweave_core::scene::MAX_ANTIALIASING;
 use rayweave_core::{Formulas, Lanes, Sampling, Search};
 use rayweave_registry::STRATEGIES;
+use serde::{Deserialize, Serialize};
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::thread::available_parallelism;
 use std::time::Duration;
@@ -20,7 +21,7 @@ const MAX_SECONDS: u64 = 7 * 24 * 3600;
 const MAX_TILES: u64 = 1 << 24;
 
 /// What is rendered.
-#[derive(Args, Clone, Copy)]
+#[derive(Args, Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct SceneOptions {
     /// Size of the picture in pixels, each 1..=65535 [default: the scene's]
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
@@ -54,7 +55,7 @@ pub struct SceneOptions {
 }
 
 /// Where the samples of a pixel lie.
-#[derive(Clone, Copy, Default, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize, ValueEnum)]
 pub enum SamplingOption {
     /// On a square lattice, weighted by the filter: what a scene file means
     #[default]
@@ -64,7 +65,7 @@ pub enum SamplingOption {
 }
 
 /// The number type of the tracer, or the wish to have it chosen.
-#[derive(Clone, Copy, Default, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize, ValueEnum)]
 pub enum PrecisionOption {
     /// What the scene needs
     #[default]
@@ -76,7 +77,7 @@ pub enum PrecisionOption {
 }
 
 /// The formulas of the tracer.
-#[derive(Clone, Copy, Default, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize, ValueEnum)]
 pub enum FormulasOption {
     /// The lab report's, its slips mended: for comparison
     Textbook,
@@ -86,7 +87,7 @@ pub enum FormulasOption {
 }
 
 /// How many rays are followed side by side.
-#[derive(Clone, Copy, Default, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize, ValueEnum)]
 pub enum LanesOption {
     /// As many as fill a register here; one by one where mirrors scatter neighbouring rays
     #[default]
@@ -103,7 +104,7 @@ pub enum LanesOption {
 }
 
 /// Whether samples are shared.
-#[derive(Clone, Copy, Default, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize, ValueEnum)]
 pub enum SharingOption {
     /// Within a tile
     #[default]
@@ -115,7 +116,7 @@ pub enum SharingOption {
 }
 
 /// What is not done unless asked for.
-#[derive(Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
 pub enum SwitchOption {
     /// With it
     On,
@@ -125,7 +126,7 @@ pub enum SwitchOption {
 }
 
 /// Which primitives a ray tries.
-#[derive(Clone, Copy, Default, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize, ValueEnum)]
 pub enum SearchOption {
     /// Those that the scene's shape does not rule out
     #[default]
@@ -140,30 +141,6 @@ pub struct TileOption {
     /// Side of a tile in pixels, for the strategies that deal in tiles
     #[arg(long, value_name = "N", value_parser = parse_tile, default_value = "32")]
     tile: NonZeroU32,
-}
-
-impl SceneOptions {
-    /// The words of a command line that has the same options.
-    pub fn words(&self) -> Vec<String> {
-        let size = self.size.map(|(width, height)| ("--size", format!("{width}x{height}")));
-        let antialiasing = self.antialiasing.map(|density| ("--antialiasing", density.to_string()));
-        let choices = [
-            ("--sampling", word(&self.sampling)),
-            ("--precision", word(&self.precision)),
-            ("--formulas", word(&self.formulas)),
-            ("--lanes", word(&self.lanes)),
-            ("--share-samples", word(&self.share_samples)),
-            ("--adaptive", word(&self.adaptive)),
-            ("--search", word(&self.search)),
-        ];
-        let options = size.into_iter().chain(antialiasing).chain(choices);
-        options.flat_map(|(name, value)| [name.to_owned(), value]).collect()
-    }
-}
-
-/// A choice as it is written on the command line.
-fn word(choice: &impl ValueEnum) -> String {
-    choice.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
 }
 
 impl From<FormulasOption> for Formulas {

@@ -36,13 +36,13 @@ impl Drop for Share {
     }
 }
 
-/// Work that tells a bar how many pixels are done.
-pub struct Watched<'a, W: ?Sized> {
+/// Work that shows on a bar how many pixels are done.
+pub struct ProgressWork<'a, W: ?Sized> {
     work: &'a W,
     bar: ProgressBar,
 }
 
-impl<'a, W: Work + ?Sized> Watched<'a, W> {
+impl<'a, W: Work + ?Sized> ProgressWork<'a, W> {
     /// Shows `work`, which computes `pixels` pixels.
     pub fn new(work: &'a W, pixels: u64) -> Self {
         let bar = bar(pixels);
@@ -62,7 +62,7 @@ impl<'a, W: Work + ?Sized> Watched<'a, W> {
     }
 }
 
-impl<W: Work + ?Sized> Work for Watched<'_, W> {
+impl<W: Work + ?Sized> Work for ProgressWork<'_, W> {
     fn render(&self, tile: &mut Tile<'_>) {
         self.work.render(tile);
         let rect = tile.rect();

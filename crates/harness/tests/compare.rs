@@ -5,6 +5,17 @@ mod program;
 use program::{folder, json, rayweave, repository};
 use serde_json::Value;
 use std::fs;
+use std::path::Path;
+
+/// The answer of `sample` to a job for `scene`, which is JSON.
+fn answer(folder: &Path, scene: &str, count_rays: bool) -> Value {
+    let options = r#""size":[9,7],"antialiasing":1,"sampling":"Importance","precision":"F64","formulas":"Textbook","lanes":"One","share_samples":"Off","adaptive":"Off","search":"Exhaustive""#;
+    let job = format!(
+        r#"{{"scene":{scene},"options":{{{options}}},"tile":4,"strategy":"tile-queue","threads":2,"count_rays":{count_rays}}}"#
+    );
+    let answer = rayweave(folder, &format!("sample {job}")).expect_success();
+    serde_json::from_str(&answer).expect("a line of JSON")
+}
 
 /// Catches a child that renders something else than was asked for: each option has to reach it.
 #[test]
@@ -18,40 +29,33 @@ fn a_sample_renders_as_the_comparison_says() {
         format!("compare {options} --strategy tile-queue --threads 2 --time-limit 1 --json a.json");
     rayweave(folder.path(), &compare).expect_success();
     let object = json(&folder.path().join("a.json"));
+    let expected = &object["results"][0]["reference_digest"];
     assert!(
-        object["digest"].as_str().expect("a digest").starts_with(&digest),
+        expected.as_str().is_some_and(|whole| whole.starts_with(&digest)),
         "{digest}: {object}"
     );
 
-    let sample = format!("sample {options} --strategy tile-queue --threads 2 --tile 4");
-    let answer = rayweave(folder.path(), &sample).expect_success();
-    let answer: Value = serde_json::from_str(&answer).expect("a line of JSON");
-    let rendered = &answer["rendered"];
-    assert_eq!(
-        (&rendered["digest"], &rendered["first_digest"]),
-        (&object["digest"], &object["digest"])
-    );
-    assert!(rendered["one_shot_ns"].as_u64() > rendered["prepare_ns"].as_u64(), "{answer}");
-    assert!(
-        rendered["render_ns"].as_u64() > Some(0) && rendered["primary_rays"].is_null(),
-        "{answer}"
-    );
-    assert_eq!(rendered["cpu_ns"].is_u64(), cfg!(unix));
+    let sample = answer(folder.path(), "null", false)["Ok"].take();
+    assert_eq!((&sample["digest"], &sample["cold_digest"]), (expected, expected));
+    assert!(sample["cold_ns"].as_u64() > sample["prepare_ns"].as_u64(), "{sample}");
+    assert!(sample["render_ns"].as_u64() > Some(0) && sample["primary_rays"].is_null(), "{sample}");
+    assert_eq!(sample["cpu_ns"].is_u64(), cfg!(unix));
 
-    let counted = rayweave(folder.path(), &format!("{sample} --count-rays")).expect_success();
-    let counted: Value = serde_json::from_str(&counted).expect("a line of JSON");
-    assert_eq!(counted["rendered"]["primary_rays"], 9 * 7 * 5);
-    assert!(counted["rendered"]["one_shot_ns"].is_null(), "{counted}");
+    let counted = answer(folder.path(), "null", true)["Ok"].take();
+    assert_eq!(counted["primary_rays"], 9 * 7 * 5);
+    assert!(counted["cold_ns"].is_null(), "{counted}");
 }
 
+#[cfg(unix)]
 #[test]
 fn a_sample_that_fails_says_why_and_is_listed_nowhere() {
     let folder = folder();
-    let answer =
-        rayweave(folder.path(), "sample --strategy sequential --threads 1 -- missing.toml");
-    let answer: Value = serde_json::from_str(&answer.expect_success()).expect("a line of JSON");
-    let reason = answer["failed"].as_str().expect("a reason");
+    let scene = format!(r#"{{"Unix":{:?}}}"#, b"missing.toml").replace(' ', "");
+    let answer = answer(folder.path(), &scene, false);
+    let reason = answer["Err"].as_str().expect("a reason");
     assert!(reason.starts_with("missing.toml: cannot be read"), "{reason}");
+    let refused = rayweave(folder.path(), "sample {}").expect_refusal();
+    assert!(refused.contains("not a job in JSON: missing field"), "{refused}");
     let help = rayweave(folder.path(), "--help").expect_success();
     assert!(help.contains("compare") && !help.contains("sample of a comparison"), "{help}");
 }
@@ -74,7 +78,11 @@ fn rounds_follow_the_goal_and_the_limit() {
         let text =
             rayweave(folder.path(), &format!("{small} {options} --json a.json")).expect_success();
         let object = json(&folder.path().join("a.json"));
-        (text, object["rounds"].as_u64().expect("a number"), object["precision_goal"].clone())
+        (
+            text,
+            object["results"][0]["rounds"].as_u64().expect("a number"),
+            object["precision_goal"].clone(),
+        )
     };
     let (text, rounds, goal) = run("--precision-goal 100% --time-limit 600");
     assert!(
@@ -111,24 +119,23 @@ fn compare_writes_what_other_programs_read() {
     let arguments = "compare --size 24x16 --antialiasing 1 --threads 1,2 --time-limit 1 --json a.json --csv a.csv";
     let table = rayweave(folder.path(), arguments).expect_success();
     let object = json(&folder.path().join("a.json"));
-    assert_eq!(object["schema"], 1);
-    assert_eq!((&object["width"], &object["height"]), (&Value::from(24), &Value::from(16)));
-    assert!(object["scene"].is_string() && object["machine"].is_object());
+    assert_eq!(object["schema"], 2);
     let results = object["results"].as_array().expect("a list");
+    let first = &results[0];
+    assert_eq!((&first["width"], &first["height"]), (&Value::from(24), &Value::from(16)));
+    assert!(first["scene"].is_string() && object["machine"].is_object());
     // The reference, its control, and the other strategies with one and with two threads.
     assert_eq!(results.len(), 2 + 2 * (rayweave_registry::available().len() - 1));
     let digest = &results[0]["digest"];
     for result in results {
         assert_eq!(result["identical"], true);
         assert_eq!(&result["digest"], digest);
-        let one_shot = &result["one_shot"];
-        for samples in
-            [&result["samples_ns"], &result["prepare_samples_ns"], &one_shot["samples_ns"]]
-        {
+        for key in ["samples_ns", "prepare_samples_ns", "cold_samples_ns"] {
+            let samples = &result[key];
             let samples = samples.as_array().expect("a list");
             assert!(samples.len() >= 8 && samples.iter().all(Value::is_u64));
         }
-        assert!(one_shot["median_ns"].is_u64() && one_shot["speedup"]["median"].is_f64());
+        assert!(result["cold_ns"].is_u64() && result["cold_speedup"]["median"].is_f64());
         assert!(result["median_ns"].is_number());
         let [low, median, high] =
             ["low", "median", "high"].map(|key| result["speedup"][key].as_f64().expect("a number"));
@@ -139,6 +146,11 @@ fn compare_writes_what_other_programs_read() {
     assert_eq!(csv.lines().count(), 1 + results.len());
 }
 
+/// The list of results.
+fn results(object: &Value) -> Vec<Value> {
+    object["results"].as_array().expect("a list").clone()
+}
+
 /// What is traced where samples are shared: of `sides` a lattice of density `density` and what lies
 /// around it.
 fn lattice_points(density: u64, sides: &[(u64, u64)]) -> u64 {
@@ -147,8 +159,8 @@ fn lattice_points(density: u64, sides: &[(u64, u64)]) -> u64 {
 }
 
 /// The rays of a strategy's results, all of them the same, and how many of them are redundant.
-fn rays(object: &Value, strategy: &str) -> (u64, u64) {
-    let results = object["results"].as_array().expect("a list").iter();
+fn rays(results: &[Value], strategy: &str) -> (u64, u64) {
+    let results = results.iter();
     let mut found: Vec<(u64, u64)> = results
         .filter(|result| result["strategy"] == strategy)
         .map(|result| {
@@ -169,7 +181,7 @@ fn compare_counts_the_rays_of_the_tiles_that_each_strategy_cuts() {
             "compare --size 24x16 --threads 2 --tile 10 {options} --time-limit 1 --json a.json"
         );
         let table = rayweave(folder.path(), &arguments).expect_success();
-        (table, json(&folder.path().join("a.json")))
+        (table, results(&json(&folder.path().join("a.json"))))
     };
 
     let (table, object) = run("--antialiasing 2");
@@ -206,8 +218,8 @@ fn compare_does_not_count_adaptive_samples() {
     let table = rayweave(folder.path(), arguments).expect_success();
     assert!(table.contains("antialiasing 2 (adaptive)") && !table.contains("/px"), "{table}");
     let object = json(&folder.path().join("a.json"));
-    assert_eq!(object["adaptive"], true);
-    assert_eq!(object["results"][0].get("primary_rays"), Some(&Value::Null));
+    let first = &object["results"][0];
+    assert_eq!((&first["adaptive"], first.get("primary_rays")), (&true.into(), Some(&Value::Null)));
 }
 
 #[test]
@@ -221,19 +233,20 @@ fn compare_says_how_the_picture_is_computed() {
         let object = json(&folder.path().join("a.json"));
         let line =
             table.lines().find(|line| line.starts_with("computed: ")).expect("the line").to_owned();
-        (line, ["lanes", "share_samples", "search"].map(|key| object[key].clone()))
+        let first = &object["results"][0];
+        (line, ["lanes", "share_samples", "accel"].map(|key| first[key].clone()))
     };
     let (line, keys) = run("--antialiasing 1 --lanes 8 --precision f32");
-    assert_eq!(line, "computed: 8 rays side by side, samples shared, search auto");
+    assert_eq!(line, "computed: 8 rays side by side, samples shared, acceleration auto");
     assert_eq!(keys, [Value::from(8), Value::from(true), Value::from("auto")]);
     let (line, keys) =
         run("--antialiasing 1 --lanes 8 --precision f64 --share-samples off --search exhaustive");
-    assert_eq!(line, "computed: 4 rays side by side, samples not shared, search exhaustive");
-    assert_eq!(keys, [Value::from(4), Value::from(false), Value::from("exhaustive")]);
+    assert_eq!(line, "computed: 4 rays side by side, samples not shared, acceleration none");
+    assert_eq!(keys, [Value::from(4), Value::from(false), Value::from("none")]);
     // Its mirrors scatter neighbours.
     let imbalance = repository().join("scenes/imbalance.toml");
     let (line, _) = run(&format!("{} --antialiasing 1", imbalance.display()));
-    assert_eq!(line, "computed: rays one by one, samples shared, search auto");
+    assert_eq!(line, "computed: rays one by one, samples shared, acceleration auto");
 }
 
 #[test]
@@ -250,19 +263,21 @@ fn compare_sets_shared_samples_beside_their_own() {
     assert_eq!(text.matches("(control)").count(), 2, "{text}");
 
     let object = json(&folder.path().join("a.json"));
-    let other = &object["unshared"];
-    assert_eq!((&object["share_samples"], &other["share_samples"]), (&true.into(), &false.into()));
-    assert_eq!((&object["schema"], &other["schema"]), (&1.into(), &1.into()));
-    // The same picture, in the same rounds.
-    assert_eq!((&object["digest"], &object["rounds"]), (&other["digest"], &other["rounds"]));
+    let all = results(&object);
+    let (with, without) = all.split_at(all.len() / 2);
+    assert_eq!(with.len(), 2 + rayweave_registry::available().len() - 1);
+    assert!(with.iter().all(|result| result["share_samples"] == true));
+    assert!(without.iter().all(|result| result["share_samples"] == false));
+    // The same image, in the same rounds.
+    for key in ["reference_digest", "rounds"] {
+        assert!(all.iter().all(|result| result[key] == all[0][key]), "{key}");
+    }
     assert!(object["sharing_speedup"]["median"].as_f64().expect("a number") > 0.0);
-    assert_eq!(rays(other, "tile-queue"), (24 * 16 * 25, 0));
+    assert_eq!(rays(without, "tile-queue"), (24 * 16 * 25, 0));
     let tile = lattice_points(2, &[(24, 16)]);
-    assert_eq!(rays(&object, "tile-queue"), (tile, 0), "one tile is the whole picture");
-    let results = |object: &Value| object["results"].as_array().expect("a list").len();
-    assert_eq!(results(&object), 2 + rayweave_registry::available().len() - 1);
+    assert_eq!(rays(with, "tile-queue"), (tile, 0), "one tile is the whole image");
     let csv = fs::read_to_string(folder.path().join("a.csv")).expect("the file");
-    assert_eq!(csv.lines().count(), 1 + results(&object) + results(other));
+    assert_eq!(csv.lines().count(), 1 + all.len());
 }
 
 #[test]
@@ -286,7 +301,7 @@ fn a_baseline_says_what_has_changed() {
     let text = rayweave(folder.path(), &format!("{small} --baseline old.json --json new.json"))
         .expect_success();
     assert!(
-        text.contains("changes since the baseline") && !text.contains("ANOTHER PICTURE"),
+        text.contains("changes since the baseline") && !text.contains("ANOTHER IMAGE"),
         "{text}"
     );
     let changes = &json(&folder.path().join("new.json"))["changes"];
@@ -298,7 +313,10 @@ fn a_baseline_says_what_has_changed() {
         ("--baseline missing.json", "missing.json: cannot be a baseline: "),
         ("--baseline old.md", "old.md: cannot be a baseline: not the JSON of a comparison"),
         ("--baseline old.json --json old.json", "old.json: is named twice"),
-        ("--baseline old.json --share-samples both", "--baseline needs one table"),
+        (
+            "--baseline old.json --share-samples off --json new.json",
+            "old.json: cannot be a baseline: share_samples is true there and false here: use",
+        ),
         (
             "--baseline old.json --tile 2 --json new.json",
             "old.json: cannot be a baseline: tile is 32 there and 2 here: use the same scene and options",
@@ -326,9 +344,11 @@ fn scenes_stand_beside_each_other() {
     }
     let two = format!("{},{}", program::scene("report.toml"), program::scene("loads/free.toml"));
     rayweave(folder.path(), &format!("{small} --scenes {two}")).expect_success();
-    let comparisons = &json(&folder.path().join("a.json"))["comparisons"];
-    assert!(comparisons[0]["scene"].as_str().is_some_and(|scene| scene.ends_with("report.toml")));
-    assert!(comparisons[1]["results"].is_array() && comparisons[2].is_null());
+    let results = results(&json(&folder.path().join("a.json")));
+    let scene = |number: usize| results[number]["scene"].as_str().expect("a path");
+    // Each has the reference, its control and the queue.
+    assert!(results.len() == 6 && scene(0).ends_with("report.toml"));
+    assert!(scene(3).ends_with("free.toml") && results[5]["largest_tile"] == 1.0);
 
     for (arguments, expected) in [
         ("--scenes all", "go to the repository's folder"),
@@ -401,8 +421,8 @@ fn who_interrupts_it_gets_the_rounds_so_far() {
         run.stdout
     );
     let object = object.expect("what was asked for");
-    let rounds = object["rounds"].as_u64().expect("a number") as usize;
-    assert!(rounds >= 6 && object["interrupted"] == true, "{object}");
+    let rounds = object["results"][0]["rounds"].as_u64().expect("a number") as usize;
+    assert!(rounds >= 6 && object["results"][0]["interrupted"] == true, "{object}");
     for result in object["results"].as_array().expect("a list") {
         assert_eq!(result["samples_ns"].as_array().map(Vec::len), Some(rounds), "{result}");
         assert!(result["median_ns"].is_u64() && result["error"].is_null(), "{result}");

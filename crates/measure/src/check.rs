@@ -6,11 +6,11 @@
 //! that nobody writes shows itself, and a [`Recorder`] around the work knows who computed what.
 //! That as many threads compute as were asked for, a [`Rendezvous`] shows.
 
-use crate::attempt::attempt;
+use crate::catch_panic::catch_panic;
 use crate::computing_threads::Rendezvous;
 use crate::finding::{Difference, Fault, Finding, Picture};
-use crate::poison;
 use crate::recorder::{Record, Recorder};
+use crate::sentinel;
 use rayweave_contract::{Image, ImageError, Plan, Renderer, Rgb, Strategy, Threads, Work};
 use std::fmt;
 use std::num::{NonZeroU32, NonZeroUsize};
@@ -113,7 +113,7 @@ pub enum CheckError {
 impl Verdict {
     /// Whether all strategies agree with the reference.
     #[must_use]
-    pub fn holds(&self) -> bool {
+    pub fn passed(&self) -> bool {
         self.findings.is_empty()
     }
 }
@@ -175,7 +175,7 @@ impl<'a> Check<'a> {
             .map_err(|source| CheckError::Image { name: case.name.clone(), source })?;
         let tile = self.tiles.first().copied().unwrap_or(NonZeroU32::MIN);
         let plan = Plan { threads: NonZeroUsize::MIN, tile };
-        attempt(|| self.reference.prepare(plan)?.render(&*case.work, &mut picture))
+        catch_panic(|| self.reference.prepare(plan)?.render(&*case.work, &mut picture))
             .map_err(|message| CheckError::Reference { name: case.name.clone(), message })?;
         Ok(picture)
     }
@@ -216,7 +216,7 @@ impl Run<'_> {
     }
 
     fn render_all(&mut self, strategy: &dyn Strategy, plan: Plan) {
-        let mut renderer = match attempt(|| strategy.prepare(plan)) {
+        let mut renderer = match catch_panic(|| strategy.prepare(plan)) {
             Ok(renderer) => renderer,
             Err(message) => {
                 self.done += self.pairs.len() * REPETITIONS;
@@ -274,9 +274,9 @@ fn render_and_compare(
     expected: &Image,
 ) -> Vec<Fault> {
     let mut found = expected.clone();
-    poison::fill(&mut found);
+    sentinel::fill(&mut found);
     let recorder = Recorder::new(work);
-    if let Err(message) = attempt(|| renderer.render(&recorder, &mut found)) {
+    if let Err(message) = catch_panic(|| renderer.render(&recorder, &mut found)) {
         return vec![Fault::Failed(message)];
     }
     if (found.width(), found.height()) != (expected.width(), expected.height()) {
@@ -309,7 +309,7 @@ fn difference(expected: &Image, found: &Image, record: &Record) -> Option<Fault>
         x,
         y,
         expected,
-        found: (!poison::untouched(color)).then_some(color),
+        found: (!sentinel::untouched(color)).then_some(color),
         computation: record.of_pixel(x, y).pop(),
     }))
 }
@@ -320,7 +320,7 @@ fn not_once(found: &Image, record: &Record) -> Option<Fault> {
     let times = record.times_computed(found.width(), found.height());
     let mut wrong =
         times.iter().zip(found.pixels()).enumerate().filter(|(_, (times, color))| match **times {
-            0 => !poison::untouched(**color),
+            0 => !sentinel::untouched(**color),
             1 => false,
             _ => true,
         });

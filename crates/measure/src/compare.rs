@@ -16,24 +16,21 @@
 //!   ratios within a round too.
 //!
 //! The protocol has an [`Executor`] do the rendering and the timing, so its logic is tested without
-//! either; [`Stopwatch`](crate::stopwatch::Stopwatch) is the real one.
+//! either; [`InProcessExecutor`](crate::in_process::InProcessExecutor) is the real one.
 
 #[cfg(test)]
 mod interrupt_tests;
 #[cfg(test)]
 mod noise_tests;
-mod row;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
 mod together_tests;
 
-pub use row::{Figures, OneShot, Role, Row};
-
+use crate::measurement::{Measurement, Sample, compute_figures};
 use crate::schedule::Protocol;
-use crate::statistics::{Interval, LEAST_VALUES, ratio_interval};
+use crate::statistics::LEAST_VALUES;
 use rayweave_contract::{Digest, Strategy};
-use row::with_figures;
 use std::num::NonZeroUsize;
 use std::time::Duration;
 use thiserror::Error;
@@ -49,66 +46,31 @@ pub struct Entry<'a> {
 
 /// Renders and times.
 pub trait Executor {
-    /// Prepares `entry`, renders one picture with it, and takes the times of both.
+    /// Prepares `entry`, renders an image with it, and times both.
     ///
     /// # Errors
     ///
-    /// What the strategy says of its failure.
-    fn render(&mut self, entry: &Entry<'_>) -> Result<Rendering, String>;
+    /// The strategy's own message.
+    fn render(&mut self, entry: &Entry<'_>) -> Result<Sample, String>;
 
-    /// The same while what is traced is counted, if the executor knows how: its times are no
-    /// sample.
+    /// Renders as [`Executor::render`] does, and counts the rays if the executor knows how. Its
+    /// times are not used.
     ///
     /// # Errors
     ///
     /// As [`Executor::render`].
-    fn warm_up(&mut self, entry: &Entry<'_>) -> Result<(Rendering, Option<Rays>), String> {
-        self.render(entry).map(|rendering| (rendering, None))
+    fn warm_up(&mut self, entry: &Entry<'_>) -> Result<Sample, String> {
+        self.render(entry)
     }
 
-    /// Time since the executor was made.
+    /// Returns the time since the executor was made.
     fn elapsed(&self) -> Duration;
 
-    /// Whether somebody wants no more. A rendering during which that happened is no sample, however
-    /// it ended.
+    /// Returns whether the run was interrupted. A rendering during which that happened is not a
+    /// sample, however it ended.
     fn is_interrupted(&self) -> bool {
         false
     }
-}
-
-/// One rendering, timed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Rendering {
-    /// The times.
-    pub sample: Sample,
-    /// Of the picture.
-    pub digest: Digest,
-    /// Of the picture of the [one shot](Sample::one_shot_ns), where there was one.
-    pub first_digest: Option<Digest>,
-}
-
-/// The times of one rendering.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Sample {
-    /// To prepare the strategy, in nanoseconds.
-    pub prepare_ns: u64,
-    /// To render, in nanoseconds.
-    pub render_ns: u64,
-    /// To prepare the strategy and render for the first time in a fresh process, in nanoseconds;
-    /// the other times are then of a second rendering. `None` where the process is not fresh.
-    pub one_shot_ns: Option<u64>,
-    /// CPU time of all threads together while rendering, in nanoseconds, where the system tells.
-    pub cpu_ns: Option<u64>,
-}
-
-/// The primary rays of one rendering.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Rays {
-    /// All that were traced.
-    pub primary: u64,
-    /// Those of them that one tile of the whole picture would have done without: neighbouring tiles
-    /// each trace the samples that they could share.
-    pub redundant: u64,
 }
 
 /// How far a comparison is; told before each rendering, outside of any timed span.
@@ -128,16 +90,12 @@ pub struct Progress {
 #[derive(Clone, Debug)]
 pub struct Comparison {
     /// The reference, the control, then the entries in the order given.
-    pub rows: Vec<Row>,
-    /// Of the picture that every row has to give.
+    pub rows: Vec<Measurement>,
+    /// The digest of the image that every row has to give.
     pub digest: Digest,
-    /// Rounds measured.
+    /// The number of rounds measured.
     pub rounds: usize,
-    /// The protocol's seed, of the order within the rounds.
-    pub seed: u64,
-    /// The protocol's [goal](Protocol::goal).
-    pub goal: Option<f64>,
-    /// Whether somebody [wanted no more](Executor::is_interrupted) before the protocol had enough.
+    /// Whether the run was [interrupted](Executor::is_interrupted) before the protocol's end.
     pub interrupted: bool,
 }
 
@@ -155,7 +113,7 @@ pub enum CompareError {
     Interrupted(usize),
 }
 
-/// What `render` gives, unless somebody wants no more before or after it.
+/// Returns the result of `render`, or `None` if the run is interrupted before or after it.
 fn uninterrupted<T>(
     executor: &mut dyn Executor,
     render: impl FnOnce(&mut dyn Executor) -> T,
@@ -168,43 +126,16 @@ fn uninterrupted<T>(
 }
 
 impl Comparison {
-    /// Whether every row gave the reference's picture, every time.
+    /// Returns whether every row gave the reference's image, every time.
     #[must_use]
-    pub fn holds(&self) -> bool {
-        self.rows.iter().all(Row::holds)
+    pub fn passed(&self) -> bool {
+        self.rows.iter().all(Measurement::passed)
     }
 
-    /// How many rows with figures miss the goal.
-    #[must_use]
-    pub fn imprecise_rows(&self) -> usize {
-        let intervals = self.rows.iter().filter_map(|row| Some(row.figures?.speedup));
-        let misses = |interval: &Interval| {
-            self.goal.is_some_and(|goal| interval.relative_half_width() > goal)
-        };
-        intervals.filter(misses).count()
-    }
-
-    /// The reference's median time to render, in nanoseconds; `None` without figures.
+    /// Returns the reference's median time to render, in nanoseconds; `None` without figures.
     #[must_use]
     pub fn reference_ns(&self) -> Option<f64> {
-        self.rows.first().and_then(|row| row.figures).map(|figures| figures.median_ns)
-    }
-
-    /// What the reference seems to gain on itself: the error of the table.
-    #[must_use]
-    pub fn control(&self) -> Option<Interval> {
-        let control = self.rows.iter().find(|row| row.role == Role::Control)?;
-        control.figures.map(|figures| figures.speedup)
-    }
-
-    /// How many times as long as here the reference takes in `other`, measured
-    /// [together](Protocol::run_together) with this one. `None` unless both have figures.
-    #[must_use]
-    pub fn gain_over(&self, other: &Self) -> Option<Interval> {
-        let times = |comparison: &Self| {
-            comparison.rows.first().filter(|row| row.figures.is_some()).map(Row::render_ns)
-        };
-        ratio_interval(&times(other)?, &times(self)?)
+        self.rows.first().and_then(|row| row.median_ns).map(|ns| ns as f64)
     }
 }
 
@@ -244,16 +175,14 @@ impl Protocol {
         let base = Entry { strategy: reference, threads: NonZeroUsize::MIN };
         let contenders = entries.iter().filter(|entry| entry.strategy.name() != reference.name());
         let entries: Vec<Entry<'_>> = [base, base].into_iter().chain(contenders.copied()).collect();
-        let roles = || {
-            [Role::Reference, Role::Control].into_iter().chain(std::iter::repeat(Role::Contender))
-        };
-        let new_rows =
-            || entries.iter().zip(roles()).map(|(entry, role)| Row::new(entry, role)).collect();
+        // The reference is the first row, its control the second.
+        let new_row = |(place, entry)| Measurement::new(entry, place == 1);
 
         let rendering = uninterrupted(&mut **first, |executor| executor.render(&base));
         let digest =
             rendering.ok_or(CompareError::Interrupted(0))?.map_err(CompareError::Reference)?.digest;
-        let mut tables: Vec<Vec<Row>> = executors.iter().map(|_| new_rows()).collect();
+        let mut tables: Vec<Vec<Measurement>> =
+            executors.iter().map(|_| entries.iter().enumerate().map(new_row).collect()).collect();
         let mut schedule = self.schedule(tables.len() * entries.len());
         let mut running = vec![true; tables.len()];
         let mut next_look = self.min_rounds.max(1);
@@ -261,7 +190,7 @@ impl Protocol {
         while let Some(turn) = schedule.next(executors[0].elapsed()) {
             // Without its reference a round says nothing.
             if turn.first {
-                running = tables.iter().map(|rows| rows[0].holds()).collect();
+                running = tables.iter().map(|rows| rows[0].passed()).collect();
             }
             if !running.contains(&true) {
                 break;
@@ -276,18 +205,18 @@ impl Protocol {
             }
             let (table, entry) = (turn.entry / entries.len(), turn.entry % entries.len());
             let (row, entry) = (&mut tables[table][entry], &entries[entry]);
-            if !running[table] || !row.holds() {
+            if !running[table] || !row.passed() {
                 continue;
             }
             progress(Progress {
-                strategy: row.strategy,
+                strategy: entry.strategy.name(),
                 threads: row.threads,
                 rounds: turn.round.unwrap_or(0),
                 fraction: turn.fraction,
             });
             let result = uninterrupted(&mut *executors[table], |executor| match turn.round {
                 None => executor.warm_up(entry),
-                Some(_) => executor.render(entry).map(|rendering| (rendering, None)),
+                Some(_) => executor.render(entry),
             });
             let Some(result) = result else {
                 interrupted_after = Some(turn.round.unwrap_or(0));
@@ -295,7 +224,7 @@ impl Protocol {
             };
             match turn.round {
                 None => row.warm_up(result, digest),
-                Some(_) => row.measure(result.map(|(rendering, _)| rendering), digest),
+                Some(_) => row.add(result, digest),
             }
         }
 
@@ -304,20 +233,21 @@ impl Protocol {
                 return Err(CompareError::Interrupted(complete));
             }
             // Of every row as many: what the broken round left behind has no counterpart.
-            tables.iter_mut().flatten().for_each(|row| row.samples.truncate(complete));
+            tables.iter_mut().flatten().for_each(|row| row.truncate(complete));
         }
         let rounds = interrupted_after.unwrap_or(schedule.rounds());
-        let (seed, goal, interrupted) = (self.seed, self.goal, interrupted_after.is_some());
-        let comparison =
-            |rows| Comparison { rows: with_figures(rows), digest, rounds, seed, goal, interrupted };
+        tables.iter_mut().for_each(|rows| compute_figures(rows));
+        let interrupted = interrupted_after.is_some();
+        let comparison = |rows| Comparison { rows, digest, rounds, interrupted };
         Ok(tables.into_iter().map(comparison).collect())
     }
 
     /// Whether every row that will have figures is as precise as was wished for.
-    fn is_precise(&self, tables: &[Vec<Row>]) -> bool {
-        let precise = |rows: &Vec<Row>, goal| rows.iter().all(|row| row.is_precise(&rows[0], goal));
+    fn is_precise(&self, tables: &[Vec<Measurement>]) -> bool {
+        let precise =
+            |rows: &Vec<Measurement>, goal| rows.iter().all(|row| row.is_precise(&rows[0], goal));
         // Without its reference a table gets no figures.
-        let mut running = tables.iter().filter(|rows| rows[0].holds());
+        let mut running = tables.iter().filter(|rows| rows[0].passed());
         self.goal.is_some_and(|goal| running.all(|rows| precise(rows, goal)))
     }
 }

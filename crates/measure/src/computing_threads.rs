@@ -6,7 +6,7 @@
 //! bringing all of them, and one with fewer gives itself away by letting the time run out. Who
 //! comes only then proves nothing: it may be a thread that was started when another had ended.
 
-use crate::attempt::attempt;
+use crate::catch_panic::catch_panic;
 use rayweave_contract::{Image, ImageError, Plan, Strategy, Tile, Work};
 use std::collections::HashSet;
 use std::num::{NonZeroU32, NonZeroUsize};
@@ -77,7 +77,7 @@ impl Rendezvous {
     ) -> Result<usize, CountError> {
         let mut image = Image::new(self.width, self.height)?;
         let meeting = Meeting::new(self.plan.threads, timeout);
-        attempt(|| strategy.prepare(self.plan)?.render(&meeting, &mut image))
+        catch_panic(|| strategy.prepare(self.plan)?.render(&meeting, &mut image))
             .map_err(CountError::Strategy)?;
         Ok(meeting.threads())
     }

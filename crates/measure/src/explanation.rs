@@ -7,12 +7,12 @@
 //! part of the result. Source for the quickest: Chen and Revels, "Robust benchmarking in noisy
 //! environments", 2016.
 
-use crate::attempt::attempt;
+use crate::catch_panic::catch_panic;
 use crate::efficiency::{Account, Losses};
-use crate::poison;
+use crate::in_process::nanoseconds;
 use crate::schedule::Protocol;
+use crate::sentinel;
 use crate::statistics::{Interval, ratio_interval};
-use crate::stopwatch::nanoseconds;
 use crate::timeline::{Cost, TimeRecorder, Timeline};
 use rayweave_contract::{Digest, Image, ImageError, Plan, Strategy, Work};
 use std::num::{NonZeroU32, NonZeroUsize};
@@ -246,10 +246,11 @@ impl<'a> Series<'a> {
         let recorder = (self.recording != Recording::Off)
             .then(|| TimeRecorder::new(experiment.work, self.threads.get(), self.room));
         let work = recorder.as_ref().map_or(experiment.work, |recorder| recorder as &dyn Work);
-        let mut renderer = attempt(|| self.strategy.prepare(plan)).map_err(ExplainError::Failed)?;
-        poison::fill(image);
+        let mut renderer =
+            catch_panic(|| self.strategy.prepare(plan)).map_err(ExplainError::Failed)?;
+        sentinel::fill(image);
         let begin = Instant::now();
-        let result = attempt(|| renderer.render(work, image));
+        let result = catch_panic(|| renderer.render(work, image));
         let end = Instant::now();
         result.map_err(ExplainError::Failed)?;
 

@@ -12,13 +12,14 @@
 //!   fitted to the times of the strategies.
 
 use crate::calibration::calibrate;
-use crate::compare::{CompareError, Comparison, Entry, Row};
+use crate::compare::{CompareError, Comparison, Entry};
+use crate::in_process::InProcessExecutor;
 use crate::independent::Independent;
+use crate::measurement::Measurement;
 use crate::overhead::of_pixels;
 use crate::piece_costs::{Cut, OneByOne, PieceCosts};
 use crate::schedule::Protocol;
 use crate::statistics::Interval;
-use crate::stopwatch::Stopwatch;
 use rayweave_contract::{Granularity, ImageError, Strategy, Threads, Work};
 use rayweave_predict::fit::{amdahl, usl};
 use rayweave_predict::{Law, Overheads, simulate};
@@ -164,8 +165,8 @@ impl Question<'_> {
         let beside = several.iter().map(|&threads| Entry { strategy: &independent, threads });
         let alone = pieces.iter().map(|strategy| Entry { strategy, threads: NonZeroUsize::MIN });
         let entries: Vec<Entry<'_>> = timed.chain(beside).chain(alone).collect();
-        let mut stopwatch = Stopwatch::new(self.work, self.size.0, self.size.1, self.tile)?;
-        let comparison = self.protocol.run(self.reference, &entries, &mut stopwatch, |at| {
+        let mut executor = InProcessExecutor::new(self.work, self.size.0, self.size.1, self.tile)?;
+        let comparison = self.protocol.run(self.reference, &entries, &mut executor, |at| {
             progress(Stage::Renderings, at.fraction);
         })?;
 
@@ -178,15 +179,15 @@ impl Question<'_> {
                 comparison,
             });
         };
-        let reference_ns = comparison.rows.first().map(Row::render_ns).unwrap_or_default();
+        let reference_ns = comparison.rows[0].samples_ns.clone();
         let slowdown_of = |threads: &NonZeroUsize| {
             let threads = threads.get();
-            find(&comparison, independent.name(), threads)?.figures?;
+            find(&comparison, independent.name(), threads)?.median_ns?;
             Some((threads, independent.slowdown(threads, &reference_ns)?))
         };
         let slowdowns: Vec<(usize, Interval)> = several.iter().filter_map(slowdown_of).collect();
         let speedup =
-            |pieces: &OneByOne| Some(find(&comparison, pieces.name(), 1)?.figures?.speedup.median);
+            |pieces: &OneByOne| Some(find(&comparison, pieces.name(), 1)?.speedup?.median);
         let measured: Vec<_> =
             pieces.iter().filter_map(|pieces| Some((pieces, speedup(pieces)?))).collect();
         let costs = PieceCosts::new(&measured, reference);
@@ -205,7 +206,7 @@ impl Question<'_> {
                 times.iter().map(|&(threads, time)| (threads, one / time)).collect();
             let points = times.iter().map(|&(threads, time)| {
                 let row = find(&comparison, strategy.name(), threads);
-                let measured = row.and_then(|row| row.figures).map(|figures| figures.speedup);
+                let measured = row.and_then(|row| row.speedup);
                 Point { threads, predicted: reference / time, measured }
             });
             Curve {
@@ -226,8 +227,8 @@ impl Question<'_> {
     }
 }
 
-fn find<'a>(comparison: &'a Comparison, strategy: &str, threads: usize) -> Option<&'a Row> {
-    comparison.rows.iter().find(|row| (row.strategy, row.threads) == (strategy, threads))
+fn find<'a>(comparison: &'a Comparison, strategy: &str, threads: usize) -> Option<&'a Measurement> {
+    comparison.rows.iter().find(|row| row.strategy == strategy && row.threads == threads)
 }
 
 /// For so many threads: that of the largest number measured that is not larger, and so of all

@@ -1,7 +1,7 @@
 //! What cores cost each other: threads that share nothing, each of which draws the whole picture.
 
+use crate::in_process::nanoseconds;
 use crate::statistics::{Interval, ratio_interval};
-use crate::stopwatch::nanoseconds;
 use rayweave_contract::{
     Granularity, Image, Output, Plan, Policy, Renderer, Scheduling, Strategy, StrategyError,
     Threads, Work, panic_message, render_tile,

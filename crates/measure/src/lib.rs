@@ -13,39 +13,42 @@
 //! What watches a rendering is a [`Work`](rayweave_contract::Work) around a `Work` ([`recorder`],
 //! [`timeline`]) or in place of it ([`computing_threads`]): no strategy has a line for any of it.
 
-mod attempt;
 pub mod calibration;
+mod catch_panic;
 pub mod check;
 pub mod compare;
 pub mod computing_threads;
+mod digest_text;
 pub mod efficiency;
 pub mod explanation;
 pub mod finding;
 pub mod forecast;
+pub mod in_process;
 pub mod independent;
-pub mod load;
 pub mod machine;
+pub mod measurement;
 pub mod noise;
 pub mod overhead;
 pub mod piece_costs;
-mod poison;
 pub mod random;
 pub mod recorder;
 pub mod schedule;
+mod sentinel;
 mod sheet;
 pub mod statistics;
-pub mod stopwatch;
 pub mod synthetic;
+pub mod tile_costs;
 pub mod timeline;
 pub mod usage;
 
 pub use check::{Case, Check, Verdict};
-pub use compare::{Comparison, Entry, Row};
+pub use compare::{Comparison, Entry};
 pub use finding::{Fault, Finding};
 pub use forecast::Forecast;
-pub use load::Load;
+pub use in_process::InProcessExecutor;
 pub use machine::Machine;
+pub use measurement::Measurement;
 pub use noise::Noise;
 pub use schedule::Protocol;
 pub use statistics::Interval;
-pub use stopwatch::Stopwatch;
+pub use tile_costs::TileCosts;

@@ -1,5 +1,6 @@
 //! What a result was measured on, and with what.
 
+use serde::{Deserialize, Serialize};
 use std::env::consts::{ARCH, OS};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,7 +10,7 @@ use std::thread;
 const GROUPS: &str = "/sys/fs/cgroup";
 
 /// Facts about this machine and this program.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Machine {
     /// The processor's model, or "unknown".
     pub cpu: String,
@@ -18,19 +19,19 @@ pub struct Machine {
     /// Threads that can run at the same time under this process's affinity and quota.
     pub available_threads: usize,
     /// The control group's limit in cores, where there is one.
-    pub quota: Option<f64>,
+    pub quota_cores: Option<f64>,
     /// Operating system: "linux", "macos", ...
-    pub os: &'static str,
+    pub os: String,
     /// Architecture: "x86_64", "aarch64", ...
-    pub arch: &'static str,
+    pub arch: String,
     /// Instruction sets that the program was compiled for.
-    pub target_features: Vec<&'static str>,
+    pub target_features: Vec<String>,
     /// The compiler's own name for its version, or "unknown".
-    pub compiler: &'static str,
+    pub compiler: String,
     /// "release" or "debug": the kind of build.
-    pub profile: &'static str,
+    pub profile: String,
     /// The commit, "-dirty" added if the sources differ from it, or "unknown".
-    pub commit: &'static str,
+    pub commit: String,
 }
 
 impl Machine {
@@ -43,16 +44,17 @@ impl Machine {
             cpu: cpu_model(&cpuinfo).unwrap_or("unknown").to_owned(),
             logical_cores: logical_cores(&cpuinfo).unwrap_or(available_threads),
             available_threads,
-            quota: quota(),
-            os: OS,
-            arch: ARCH,
+            quota_cores: quota(),
+            os: OS.to_owned(),
+            arch: ARCH.to_owned(),
             target_features: env!("RAYWEAVE_TARGET_FEATURES")
                 .split(',')
                 .filter(|name| !name.is_empty())
+                .map(str::to_owned)
                 .collect(),
-            compiler: env!("RAYWEAVE_COMPILER"),
-            profile: env!("RAYWEAVE_PROFILE"),
-            commit: env!("RAYWEAVE_COMMIT"),
+            compiler: env!("RAYWEAVE_COMPILER").to_owned(),
+            profile: env!("RAYWEAVE_PROFILE").to_owned(),
+            commit: env!("RAYWEAVE_COMMIT").to_owned(),
         }
     }
 }

@@ -5,8 +5,8 @@
 
 use crate::machine::cpu_groups;
 use crate::usage::Usage;
+use serde::{Deserialize, Serialize};
 use std::fs;
-use std::ops::RangeInclusive;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -17,77 +17,83 @@ const TICK_MS: u64 = 10;
 /// The share of the machine that others may use before a measurement counts as disturbed.
 const QUIET: f64 = 0.02;
 
-/// What went on during a measurement.
-#[derive(Clone, Debug, Default, PartialEq)]
+/// What went on during a measurement. What the system does not tell is `None`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Noise {
-    /// How long it took.
-    pub wall: Duration,
-    /// Logical cores of the machine.
-    pub cores: usize,
-    /// CPU time of all other programs on the machine, those in other containers included.
-    pub foreign: Option<Duration>,
-    /// Time that a hypervisor gave to other machines while this one had something to do.
-    pub stolen: Option<Duration>,
-    /// How often the control group's limit stopped this process and its neighbours in the group.
+    /// The duration of the measurement, in seconds.
+    pub wall_s: f64,
+    /// The CPU time of all other programs on the machine, those in other containers included, in
+    /// seconds.
+    pub foreign_cpu_s: Option<f64>,
+    /// The time that a hypervisor gave to other machines while this one had something to do, in
+    /// seconds.
+    pub stolen_s: Option<f64>,
+    /// The share of the machine that other programs and other machines had: 0 to 1.
+    pub share_of_others: Option<f64>,
+    /// The number of times that the control group's limit stopped this process and its neighbours
+    /// in the group.
     pub throttled: Option<u64>,
-    /// How often a thread of ours had to make room for somebody else.
+    /// The number of times that one of our threads lost its core while it had something to do.
     pub involuntary_switches: Option<u64>,
-    /// The lowest and the highest clock rate of a core at the beginning and the end, in MHz.
-    pub megahertz: Option<RangeInclusive<f64>>,
+    /// The lowest clock rate of a core at the beginning and at the end, in MHz.
+    pub lowest_mhz: Option<f64>,
+    /// The highest clock rate of a core at the beginning and at the end, in MHz.
+    pub highest_mhz: Option<f64>,
+    /// Whether the times are to be doubted: others had more than 2 % of the machine, or the limit
+    /// was reached.
+    pub disturbed: bool,
 }
 
 impl Noise {
-    /// Whether the times are to be doubted: others had more than 2 % of the machine, or the limit
-    /// was reached.
+    /// Computes what follows from the counts on a machine of `cores` logical cores: the share of
+    /// others, and whether they disturbed.
     #[must_use]
-    pub fn is_disturbing(&self) -> bool {
-        self.share_of_others().is_some_and(|share| share > QUIET)
-            || self.throttled.is_some_and(|times| times > 0)
-    }
-
-    /// What share of the machine other programs and other machines had: 0 to 1.
-    #[must_use]
-    pub fn share_of_others(&self) -> Option<f64> {
-        let others = self.foreign? + self.stolen.unwrap_or_default();
-        let all = self.wall.as_secs_f64() * self.cores.max(1) as f64;
-        Some((others.as_secs_f64() / all.max(f64::MIN_POSITIVE)).min(1.0))
+    fn judged(self, cores: usize) -> Self {
+        let capacity = (self.wall_s * cores.max(1) as f64).max(f64::MIN_POSITIVE);
+        let others = self.foreign_cpu_s.map(|foreign| foreign + self.stolen_s.unwrap_or_default());
+        let share_of_others = others.map(|others| (others / capacity).min(1.0));
+        let throttled = self.throttled.is_some_and(|times| times > 0);
+        let disturbed = throttled || share_of_others.is_some_and(|share| share > QUIET);
+        Self { share_of_others, disturbed, ..self }
     }
 }
 
-/// Looks at the machine from its making until it is [finished](Watch::finish).
+/// Watches the machine from [`NoiseMonitor::start`] to [`NoiseMonitor::finish`].
 #[derive(Debug)]
-pub struct Watch {
+pub struct NoiseMonitor {
     begin: Instant,
     before: Look,
 }
 
-impl Watch {
-    /// Begins to watch.
+impl NoiseMonitor {
+    /// Starts to watch.
     #[must_use]
     pub fn start() -> Self {
         Self { begin: Instant::now(), before: Look::now() }
     }
 
-    /// What went on since then, on a machine of `cores` logical cores.
+    /// Returns what went on since the start, on a machine of `cores` logical cores.
     #[must_use]
-    pub fn finish(self, cores: usize) -> Noise {
-        let (wall, after) = (self.begin.elapsed(), Look::now());
-        let Self { before, .. } = self;
+    pub fn finish(&self, cores: usize) -> Noise {
+        let (wall, before, after) = (self.begin.elapsed(), &self.before, Look::now());
         let own = after.own.zip(before.own).map(|(after, before)| after.since(before));
         let times = after.times.zip(before.times);
         let busy = times.map(|(after, before)| after.busy.saturating_sub(before.busy));
-        Noise {
-            wall,
-            cores,
-            foreign: busy.zip(own).map(|(busy, own)| busy.saturating_sub(own.cpu)),
-            stolen: times.map(|(after, before)| after.stolen.saturating_sub(before.stolen)),
-            throttled: after
-                .throttled
-                .zip(before.throttled)
-                .map(|(after, before)| after.saturating_sub(before)),
+        let foreign = busy.zip(own).map(|(busy, own)| busy.saturating_sub(own.cpu));
+        let stolen = times.map(|(after, before)| after.stolen.saturating_sub(before.stolen));
+        let throttled = after.throttled.zip(before.throttled);
+        let megahertz = || before.megahertz.iter().chain(&after.megahertz).copied();
+        let noise = Noise {
+            wall_s: wall.as_secs_f64(),
+            foreign_cpu_s: foreign.map(|time| time.as_secs_f64()),
+            stolen_s: stolen.map(|time| time.as_secs_f64()),
+            throttled: throttled.map(|(after, before)| after.saturating_sub(before)),
             involuntary_switches: own.map(|own| own.involuntary_switches),
-            megahertz: range(before.megahertz.into_iter().chain(after.megahertz)),
-        }
+            lowest_mhz: megahertz().reduce(f64::min),
+            highest_mhz: megahertz().reduce(f64::max),
+            ..Noise::default()
+        };
+        noise.judged(cores)
     }
 }
 
@@ -159,12 +165,6 @@ fn kilohertz(core: &Path) -> Option<f64> {
     fs::read_to_string(core.join("cpufreq/scaling_cur_freq")).ok()?.trim().parse().ok()
 }
 
-fn range(values: impl Iterator<Item = f64>) -> Option<RangeInclusive<f64>> {
-    values
-        .map(|value| value..=value)
-        .reduce(|a, b| a.start().min(*b.start())..=a.end().max(*b.end()))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -188,26 +188,16 @@ mod tests {
 
     #[test]
     fn others_disturb_above_their_share() {
-        let noise = |foreign, stolen, throttled| Noise {
-            wall: Duration::from_secs(10),
-            cores: 2,
-            foreign: Some(Duration::from_millis(foreign)),
-            stolen: Some(Duration::from_millis(stolen)),
-            throttled,
-            ..Noise::default()
+        let noise = |foreign_cpu_s, stolen_s, throttled| {
+            let (foreign_cpu_s, stolen_s) = (Some(foreign_cpu_s), Some(stolen_s));
+            Noise { wall_s: 10.0, foreign_cpu_s, stolen_s, throttled, ..Noise::default() }.judged(2)
         };
-        // 2 % of two cores for ten seconds are 400 ms.
-        assert!(!noise(300, 90, Some(0)).is_disturbing());
-        assert!(noise(300, 110, Some(0)).is_disturbing() && noise(0, 0, Some(1)).is_disturbing());
-        assert_eq!(noise(4000, 1000, None).share_of_others(), Some(0.25));
-        let unknown = Noise { wall: Duration::from_secs(1), cores: 2, ..Noise::default() };
-        assert!(!unknown.is_disturbing() && unknown.share_of_others().is_none());
-    }
-
-    #[test]
-    fn lowest_and_highest() {
-        assert_eq!(range([2.0, 1.0, 3.0].into_iter()), Some(1.0..=3.0));
-        assert_eq!(range(std::iter::empty()), None);
+        // 2 % of two cores for ten seconds are 0.4 s.
+        assert!(!noise(0.3, 0.09, Some(0)).disturbed);
+        assert!(noise(0.3, 0.11, Some(0)).disturbed && noise(0.0, 0.0, Some(1)).disturbed);
+        assert_eq!(noise(4.0, 1.0, None).share_of_others, Some(0.25));
+        let unknown = Noise { wall_s: 1.0, ..Noise::default() }.judged(2);
+        assert!(!unknown.disturbed && unknown.share_of_others.is_none());
     }
 
     /// Catches our own work taken for somebody else's.
@@ -219,14 +209,14 @@ mod tests {
                 .expect("its first line")
                 .busy
         };
-        let (busy_before, watch) = (stat(), Watch::start());
+        let (busy_before, watch) = (stat(), NoiseMonitor::start());
         let before = Usage::of_this_process().expect("Linux").cpu;
         while Usage::of_this_process().expect("Linux").cpu < before + Duration::from_millis(100) {}
-        let (foreign, busy) = (watch.finish(1).foreign.expect("Linux"), stat() - busy_before);
+        let (foreign, busy) = (watch.finish(1).foreign_cpu_s.expect("Linux"), stat() - busy_before);
         // All that was done, less what we did; ticks are coarse.
         let coarseness = Duration::from_millis(4 * TICK_MS);
         assert!(
-            foreign + Duration::from_millis(100) <= busy + coarseness,
+            Duration::from_secs_f64(foreign) + Duration::from_millis(100) <= busy + coarseness,
             "{foreign:?} of {busy:?}"
         );
     }

@@ -6,7 +6,7 @@
 
 mod curve;
 
-use crate::attempt::attempt;
+use crate::catch_panic::catch_panic;
 use crate::schedule::Protocol;
 use crate::sheet::{Columns, Sheet};
 use crate::statistics::{Interval, median, median_interval};
@@ -120,7 +120,7 @@ impl Study {
     /// Whether every picture of synthetic work was right. A strategy that is not available draws
     /// none.
     #[must_use]
-    pub fn holds(&self) -> bool {
+    pub fn passed(&self) -> bool {
         self.rows.iter().all(|row| !matches!(row.figures, Err(Failure::Rendering(_))))
     }
 }
@@ -191,7 +191,7 @@ impl Overhead<'_> {
         // Their threads would be there already: OpenMP keeps one pool for each calling thread.
         drop((one, renderer));
         let begin = Instant::now();
-        let mut renderer = attempt(|| strategy.prepare(Plan { threads, tile: TILE }))
+        let mut renderer = catch_panic(|| strategy.prepare(Plan { threads, tile: TILE }))
             .map_err(Failure::Preparing)?;
         let prepare = begin.elapsed().as_nanos() as f64;
         // The second time is neither the first nor later.
@@ -313,7 +313,7 @@ pub(crate) fn of_pixels(
     strategy: &dyn Strategy,
     threads: NonZeroUsize,
 ) -> Result<Box<dyn Renderer>, String> {
-    attempt(|| strategy.prepare(Plan { threads, tile: NonZeroU32::MIN }))
+    catch_panic(|| strategy.prepare(Plan { threads, tile: NonZeroU32::MIN }))
 }
 
 /// Nanoseconds a step of synthetic work, on one thread of `reference`.

@@ -4,8 +4,8 @@
 //! The cost of dispatch is measured on columns of pixels, with tiles of one pixel: there a pixel, a
 //! row and a tile are the same, and the work of a piece can be next to nothing.
 
-use crate::attempt::attempt;
-use crate::poison;
+use crate::catch_panic::catch_panic;
+use crate::sentinel;
 use crate::synthetic::even;
 use rayweave_contract::{Image, Renderer, Tile, Work};
 use std::time::Instant;
@@ -47,9 +47,9 @@ impl Sheet {
     ///
     /// The renderer fails, or draws another picture.
     pub(crate) fn time(&mut self, renderer: &mut dyn Renderer) -> Result<f64, String> {
-        poison::fill(&mut self.image);
+        sentinel::fill(&mut self.image);
         let begin = Instant::now();
-        let result = attempt(|| renderer.render(&*self.work, &mut self.image));
+        let result = catch_panic(|| renderer.render(&*self.work, &mut self.image));
         let time = begin.elapsed().as_nanos() as f64;
         result?;
         if self.image == self.expected {

@@ -4,6 +4,7 @@
 //! a fixed seed, and between which of their medians all but a few lie.
 
 use crate::random::SplitMix64;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::SQRT_2;
 
 /// Resamples: at 8 values the ends of an interval are 11 of them in.
@@ -13,7 +14,7 @@ const RESAMPLES: usize = 2000;
 const SEED: u64 = 1;
 
 /// A median and the ends of its 95 % confidence interval, all in the unit of the sample.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Interval {
     /// Of the sample itself.
     pub median: f64,

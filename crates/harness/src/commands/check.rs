@@ -1,18 +1,18 @@
 //! `rayweave check`: proof that all strategies draw the same picture.
 
+use crate::files::{PendingFile, distinct_files};
 use crate::input::Input;
 use crate::options::{
     SceneOptions, all_threads, checked_tile, chosen, distinct, left_out_line, parse_threads,
     strategy_parser,
 };
-use crate::output::{PendingFile, distinct_files};
 use crate::{Outcome, print, progress};
 use clap::Args;
 use rayweave_contract::Strategy;
 use rayweave_measure::check::{Case, Check, Verdict};
 use rayweave_measure::computing_threads::TIMEOUT;
 use rayweave_measure::machine::Machine;
-use rayweave_report as report;
+use rayweave_output as report;
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::path::PathBuf;
 
@@ -88,7 +88,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let text = report::check::text(&verdict);
     print(&format!("{}\n{facts}\n\n{}\n{left_out}", input.describe(), text.trim_end()))?;
     json.map_or(Ok(()), |file| file.finish(report::check::json(&verdict, &machine).as_bytes()))?;
-    Ok(if verdict.holds() { Outcome::Held } else { Outcome::Failed })
+    Ok(if verdict.passed() { Outcome::Passed } else { Outcome::Failed })
 }
 
 fn run_with_bar(check: &Check<'_>) -> Result<Verdict, String> {

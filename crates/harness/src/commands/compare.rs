@@ -1,23 +1,23 @@
 //! `rayweave compare`, and `rayweave` alone: the table.
 
-use crate::child::Children;
+use crate::files::{PendingFile, distinct_files, named_twice};
 use crate::input::Input;
 use crate::interrupt::Interrupt;
 use crate::options::{
     SceneOptions, SharingOption, TileOption, all_threads, chosen, distinct, left_out_line,
     parse_percent, parse_seconds, parse_threads, strategy_parser,
 };
-use crate::output::{PendingFile, distinct_files, named_twice};
-use crate::watched::watched;
+use crate::progress::Share;
+use crate::subprocess::{Job, SubprocessExecutor};
+use crate::with_noise::with_noise;
 use crate::{Outcome, complain, print};
 use clap::Args;
 use rayweave_contract::Strategy;
-use rayweave_core::{Arithmetic, Execution};
+use rayweave_core::{Arithmetic, Execution, Search};
 use rayweave_measure::compare::{CompareError, Comparison, Entry, Executor};
-use rayweave_measure::machine::Machine;
-use rayweave_measure::noise::Noise;
-use rayweave_measure::{Load, Protocol};
-use rayweave_report::compare::{Baseline, BothReport, Report, ScenesReport, Subject};
+use rayweave_measure::noise::NoiseMonitor;
+use rayweave_measure::{Machine, Measurement, Protocol, TileCosts};
+use rayweave_output::compare::{Record, Results, Subject, comparable};
 use std::fs;
 use std::io;
 use std::num::{NonZeroU32, NonZeroUsize};
@@ -76,62 +76,49 @@ const LOADS: &str = "scenes/loads";
 
 pub fn run(scene: Option<&Path>, options: &Options) -> Result<Outcome, String> {
     let scenes = scenes(scene, options)?;
-    let single = options.scenes.is_empty() && options.scene_options.share_samples.single().is_ok();
-    if options.baseline.is_some() && !single {
-        return Err(
-            "--baseline needs one table: a single scene, and --share-samples on or off".to_owned()
-        );
-    }
     let files = Files::create(&scenes, options)?;
     let baseline = options.baseline.as_deref().map(read_baseline).transpose()?;
-    // All of them before the first is measured: a mistake in the last is told at once.
+    // All of them before the first is measured: a mistake in the last is reported at once.
     let inputs = scenes.iter().map(|scene| load(scene.as_deref(), options));
     let inputs = inputs.collect::<Result<Vec<Input>, _>>()?;
-    if let (Some(path), Some(baseline), [input]) = (&options.baseline, &baseline, &inputs[..]) {
-        let tile = options.tile.of(input.width, input.height)?;
-        let subject = subject(input, ways(options)[0], tile);
-        baseline.check(&subject).map_err(|reason| no_baseline(path, &reason))?;
+    if let Some((path, baseline)) = options.baseline.as_deref().zip(baseline.as_ref()) {
+        let subjects = inputs.iter().flat_map(|input| subjects(input, options));
+        let subjects = subjects.collect::<Result<Vec<Subject>, _>>()?;
+        comparable(baseline, &subjects).map_err(|reason| no_baseline(path, &reason))?;
     }
-    let measured = match measure_all(&scenes, inputs, options) {
-        Ok(measured) => measured,
+    // Below a single scene's table.
+    let notes = match &inputs[..] {
+        [input] => {
+            let skipped = input.skipped_line().map(|line| line + "\n").unwrap_or_default();
+            format!("\n{}\n{skipped}", input.arithmetic_line())
+        }
+        _ => "\n".to_owned(),
+    };
+    let (measured, machine, noise) = with_noise(|bar| measure_all(&scenes, &inputs, options, bar));
+    let records = match measured {
+        Ok(records) => records,
         Err(Unmeasured::Failed(reason)) => return Err(reason),
         Err(Unmeasured::Interrupted(reason)) => {
             complain(&reason);
             return Ok(Outcome::Interrupted);
         }
     };
-    let first = &measured[0];
-    let skipped = first.input.skipped_line().map(|line| line + "\n").unwrap_or_default();
-    let left_out = left_out_line(&options.strategy);
-    let below = format!("\n{}\n{skipped}{left_out}", first.input.arithmetic_line());
-    if !options.scenes.is_empty() {
-        let reports: Vec<Report<'_>> =
-            measured.iter().map(|measured| measured.report(0, None)).collect();
-        let loads: Vec<&Load> =
-            measured.iter().filter_map(|measured| measured.load.as_ref()).collect();
-        let not_measured =
-            scenes[measured.len()..].iter().flatten().map(|path| path.display().to_string());
-        let not_measured: Vec<String> = not_measured.collect();
-        let all = ScenesReport { reports: &reports, loads: &loads, not_measured: &not_measured };
-        print(&format!("{}\n{left_out}", all.table()))?;
-        files.finish(&all.json(), &all.csv(), &all.markdown())?;
-    } else if first.comparisons.len() == 2 {
-        let both = BothReport { shared: first.report(0, None), unshared: first.report(1, None) };
-        print(&format!("{}{below}", both.table()))?;
-        files.finish(&both.json(), &both.csv(), &both.markdown())?;
-    } else {
-        let report = first.report(0, baseline.as_ref());
-        print(&format!("{}{below}", report.table()))?;
-        files.finish(&report.json(), &report.csv(), &report.markdown())?;
+    let mut results = Results::new(machine, noise, records);
+    (results.seed, results.precision_goal) = (Protocol::default().seed, options.precision_goal);
+    let measured = |input: &Input| results.results.iter().any(|r| r.subject.scene == input.name);
+    let left_out = inputs.iter().filter(|input| !measured(input));
+    results.not_measured = left_out.map(|input| input.name.clone()).collect();
+    if let Some(baseline) = &baseline {
+        results = results.compared_with(baseline);
     }
-    let comparisons = || measured.iter().flat_map(|measured| &measured.comparisons);
+    print(&format!("{}{notes}{}", results.table(), left_out_line(&options.strategy)))?;
+    files.finish(&results)?;
     let interrupted =
-        measured.len() < scenes.len() || comparisons().any(|comparison| comparison.interrupted);
-    let hold = comparisons().all(Comparison::holds);
-    Ok(match (hold, interrupted) {
+        !results.not_measured.is_empty() || results.results.iter().any(|r| r.interrupted);
+    Ok(match (results.passed(), interrupted) {
         (false, _) => Outcome::Failed,
         (true, true) => Outcome::Interrupted,
-        (true, false) => Outcome::Held,
+        (true, false) => Outcome::Passed,
     })
 }
 
@@ -182,42 +169,27 @@ impl Files {
         Ok(Self { json: create(json)?, csv: create(csv)?, markdown: create(markdown)? })
     }
 
-    fn finish(self, json: &str, csv: &str, markdown: &str) -> Result<(), String> {
-        let contents = [(self.json, json), (self.csv, csv), (self.markdown, markdown)];
-        contents
-            .into_iter()
-            .try_for_each(|(file, text)| file.map_or(Ok(()), |file| file.finish(text.as_bytes())))
+    fn finish(self, results: &Results) -> Result<(), String> {
+        let views: [(_, fn(&Results) -> String); 3] = [
+            (self.json, Results::json),
+            (self.csv, Results::csv),
+            (self.markdown, Results::markdown),
+        ];
+        let mut wanted = views.into_iter().filter_map(|(file, view)| Some((file?, view)));
+        wanted.try_for_each(|(file, view)| file.finish(view(results).as_bytes()))
     }
 }
 
-fn read_baseline(path: &Path) -> Result<Baseline, String> {
+fn read_baseline(path: &Path) -> Result<Results, String> {
     let text = fs::read_to_string(path).map_err(|e| no_baseline(path, &e.to_string()))?;
-    Baseline::parse(&text).map_err(|reason| no_baseline(path, &reason))
+    Results::parse(&text).map_err(|reason| no_baseline(path, &reason))
 }
 
 fn no_baseline(path: &Path, reason: &str) -> String {
     format!("{}: cannot be a baseline: {reason}", path.display())
 }
 
-/// A scene, and a comparison for each way to compute its picture, measured in the same rounds.
-struct Measured {
-    input: Input,
-    subjects: Vec<Subject>,
-    comparisons: Vec<Comparison>,
-    machine: Machine,
-    noise: Noise,
-    /// How the cost lies in the picture, if there are other scenes.
-    load: Option<Load>,
-}
-
-impl Measured {
-    fn report<'a>(&'a self, way: usize, baseline: Option<&'a Baseline>) -> Report<'a> {
-        let (subject, comparison) = (&self.subjects[way], &self.comparisons[way]);
-        Report { subject, comparison, machine: &self.machine, noise: &self.noise, baseline }
-    }
-}
-
-/// Whether samples are shared, for each way to compute the picture.
+/// Returns whether samples are shared, for each way to compute the image.
 fn ways(options: &Options) -> &'static [bool] {
     match options.scene_options.share_samples {
         SharingOption::On => &[true],
@@ -263,17 +235,21 @@ impl From<String> for Unmeasured {
 /// Measures on one scene after the other, until it is interrupted: on one of them at least.
 fn measure_all(
     scenes: &[Option<PathBuf>],
-    inputs: Vec<Input>,
+    inputs: &[Input],
     options: &Options,
-) -> Result<Vec<Measured>, Unmeasured> {
+    bar: &Share,
+) -> Result<Vec<Record>, Unmeasured> {
     let (mut all, interrupt) = (Vec::new(), Interrupt::watch());
-    for (scene, input) in scenes.iter().zip(inputs) {
+    for (number, (scene, input)) in scenes.iter().zip(inputs).enumerate() {
         if !all.is_empty() && interrupt.happened() {
             break;
         }
-        match measure(scene.as_deref(), input, options, scenes.len(), &interrupt) {
-            Ok(measured) => all.push(measured),
-            // What was measured before is worth showing.
+        let show = |fraction: f64, message: String| {
+            bar.show((number as f64 + fraction) / scenes.len() as f64, message);
+        };
+        match measure(scene.as_deref(), input, options, scenes.len(), &interrupt, show) {
+            Ok(records) => all.extend(records),
+            // The scenes before are worth showing.
             Err(Unmeasured::Interrupted(_)) if !all.is_empty() => break,
             Err(unmeasured) => return Err(unmeasured),
         }
@@ -281,46 +257,69 @@ fn measure_all(
     Ok(all)
 }
 
-/// Measures on one of `scenes` scenes.
+/// Measures on one of `scenes` scenes: a record for each row and each way to compute the image.
 fn measure(
     scene: Option<&Path>,
-    input: Input,
+    input: &Input,
     options: &Options,
     scenes: usize,
     interrupt: &Interrupt,
-) -> Result<Measured, Unmeasured> {
-    let ways = ways(options);
+    show: impl Fn(f64, String),
+) -> Result<Vec<Record>, Unmeasured> {
     let tile = options.tile.of(input.width, input.height)?;
-    let children =
-        ways.iter().map(|&way| Children::new(scene, &options.scene_options, way, tile, interrupt));
-    let mut children = children.collect::<Result<Vec<Children>, _>>()?;
-    let mut executors: Vec<&mut dyn Executor> =
-        children.iter_mut().map(|children| children as &mut dyn Executor).collect();
-
-    let load = (!options.scenes.is_empty()).then(|| load_of(&input, tile)).transpose()?;
-    let reference = rayweave_registry::reference();
-    let protocol = protocol(options, ways.len(), scenes);
-    let (comparisons, machine, noise) = watched(|bar| {
-        protocol.run_together(reference, &entries(options), &mut executors, |progress| {
-            // Drawn here and nowhere else: between the timed spans.
-            bar.show(
-                progress.fraction,
-                format!("{}, threads: {}", progress.strategy, progress.threads),
-            );
-        })
+    let subjects = subjects(input, options).collect::<Result<Vec<Subject>, _>>()?;
+    let executors = ways(options).iter().map(|&way| {
+        let share_samples = if way { SharingOption::On } else { SharingOption::Off };
+        let job = Job {
+            scene: scene.map(Into::into),
+            options: SceneOptions { share_samples, ..options.scene_options },
+            tile,
+            strategy: String::new(),
+            threads: NonZeroUsize::MIN,
+            count_rays: false,
+        };
+        SubprocessExecutor::new(job, interrupt)
     });
+    let mut executors = executors.collect::<Result<Vec<SubprocessExecutor>, _>>()?;
+    let mut executors: Vec<&mut dyn Executor> =
+        executors.iter_mut().map(|executor| executor as &mut dyn Executor).collect();
+
+    let costs = (scenes > 1).then(|| tile_costs(input, tile)).transpose()?;
+    let monitor = NoiseMonitor::start();
+    let comparisons = protocol(options, subjects.len(), scenes).run_together(
+        rayweave_registry::reference(),
+        &entries(options),
+        &mut executors,
+        // Drawn here and nowhere else: between the timed spans.
+        |at| show(at.fraction, format!("{}, threads: {}", at.strategy, at.threads)),
+    );
     let comparisons = comparisons.map_err(|error| match error {
         CompareError::Interrupted(_) => Unmeasured::Interrupted(error.to_string()),
         CompareError::Reference(_) => Unmeasured::Failed(error.to_string()),
     })?;
-    let subjects = ways.iter().map(|&share_samples| subject(&input, share_samples, tile)).collect();
-    Ok(Measured { input, subjects, comparisons, machine, noise, load })
+    let disturbed = monitor.finish(Machine::here().logical_cores).disturbed;
+    let records = subjects.iter().zip(comparisons).flat_map(|(subject, comparison)| {
+        let Comparison { rows, digest, rounds, interrupted } = comparison;
+        let costs = &costs;
+        let record = move |measurement: Measurement| Record {
+            subject: subject.clone(),
+            rounds,
+            interrupted,
+            disturbed,
+            reference_digest: digest.to_string(),
+            imbalance: costs.as_ref().map(|costs| costs.imbalance(measurement.threads)),
+            largest_tile: costs.as_ref().map(TileCosts::max_share),
+            measurement,
+        };
+        rows.into_iter().map(record)
+    });
+    Ok(records.collect())
 }
 
-/// How the cost lies in the picture.
-fn load_of(input: &Input, tile: NonZeroU32) -> Result<Load, String> {
+/// Measures the cost of each tile.
+fn tile_costs(input: &Input, tile: NonZeroU32) -> Result<TileCosts, String> {
     let work = input.work(input.width, input.height)?;
-    Load::of(&*work, input.width, input.height, tile).map_err(|e| e.to_string())
+    TileCosts::of(&*work, input.width, input.height, tile).map_err(|e| e.to_string())
 }
 
 /// What is compared with the reference.
@@ -349,21 +348,31 @@ fn protocol(options: &Options, ways: usize, scenes: usize) -> Protocol {
     }
 }
 
-fn subject(input: &Input, share_samples: bool, tile: NonZeroU32) -> Subject {
+/// Returns the subjects of a scene: one for each way to compute the image.
+fn subjects<'a>(
+    input: &'a Input,
+    options: &'a Options,
+) -> impl Iterator<Item = Result<Subject, String>> + 'a {
     let Execution { arithmetic: Arithmetic { formulas, precision }, lanes, search, .. } =
         input.execution;
-    Subject {
-        scene: input.name.clone(),
-        width: input.width,
-        height: input.height,
-        tile: tile.get(),
-        antialiasing: input.scene.render.antialiasing,
-        sampling: input.scene.render.sampling,
-        adaptive: input.scene.render.adaptive,
-        formulas,
-        precision: precision.to_string(),
-        lanes: lanes.count(precision),
-        share_samples,
-        search,
-    }
+    let accel = match search {
+        Search::Auto => "auto",
+        Search::Exhaustive => "none",
+    };
+    ways(options).iter().map(move |&share_samples| {
+        Ok(Subject {
+            scene: input.name.clone(),
+            width: input.width,
+            height: input.height,
+            antialiasing: input.scene.render.antialiasing,
+            sampling: input.scene.render.sampling.to_string(),
+            adaptive: input.scene.render.adaptive,
+            formulas: formulas.to_string(),
+            precision: precision.to_string(),
+            lanes: lanes.count(precision),
+            share_samples,
+            accel: accel.to_owned(),
+            tile: options.tile.of(input.width, input.height)?.get(),
+        })
+    })
 }

@@ -1,8 +1,8 @@
 //! `rayweave error`: speed against error.
 
+use crate::files::{PendingFile, distinct_files};
 use crate::input;
 use crate::options::{all_threads, parse_psnr, parse_size};
-use crate::output::{PendingFile, distinct_files};
 use crate::picture::Format;
 use crate::progress::Share;
 use crate::{Outcome, print};
@@ -12,7 +12,7 @@ use rayweave_accuracy::tradeoff::{EXACT, Experiment, Setting, Study, timed};
 use rayweave_contract::{Image, Plan, Work};
 use rayweave_core::Scene;
 use rayweave_measure::{Machine, Protocol};
-use rayweave_report::tradeoff::Report;
+use rayweave_output::tradeoff::Report;
 use rayweave_scene_file::ImageSize;
 use std::fs;
 use std::num::NonZeroU32;
@@ -106,7 +106,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
         file.finish(&Format::Png.encode(&study.reference.picture)?)?;
         write_pictures(folder, &scene, &study, size)?;
     }
-    Ok(if study.repeatable { Outcome::Held } else { Outcome::Failed })
+    Ok(if study.repeatable { Outcome::Passed } else { Outcome::Failed })
 }
 
 /// The scene's shape in [`PIXELS`] pixels, or in a half, a quarter ... of them if all settings

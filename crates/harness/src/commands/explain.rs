@@ -1,19 +1,19 @@
 //! `rayweave explain`: why a strategy loses what it loses.
 
+use crate::files::{PendingFile, distinct_files};
 use crate::input::Input;
 use crate::options::{
     SceneOptions, TileOption, all_threads, distinct, parse_seconds, parse_threads, strategy_parser,
 };
-use crate::output::{PendingFile, distinct_files};
 use crate::picture::Format;
-use crate::watched::watched;
+use crate::with_noise::with_noise;
 use crate::{Outcome, print};
 use clap::Args;
 use rayweave_contract::{Rect, Strategy};
 use rayweave_core::primary_rays;
 use rayweave_measure::Protocol;
 use rayweave_measure::explanation::{Experiment, ExplainError};
-use rayweave_report::explain::Report;
+use rayweave_output::explain::Report;
 use std::fs;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -89,7 +89,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let threads = arguments.threads.unwrap_or_else(all_threads);
     // The bar is drawn between the timed spans.
     let (explained, machine, noise) =
-        watched(|bar| experiment.run(&strategies, threads, |fraction| bar.show(fraction, "")));
+        with_noise(|bar| experiment.run(&strategies, threads, |fraction| bar.show(fraction, "")));
     let explanation = match explained {
         Ok(explanation) => explanation,
         Err(error @ ExplainError::Different { .. }) => {
@@ -115,7 +115,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     json.map_or(Ok(()), |file| file.finish(report.json().as_bytes()))?;
     trace.map_or(Ok(()), |file| file.finish(report.trace().as_bytes()))?;
     pictures.map_or(Ok(()), |files| write_pictures(files, &report))?;
-    Ok(Outcome::Held)
+    Ok(Outcome::Passed)
 }
 
 /// The pictures of one strategy.

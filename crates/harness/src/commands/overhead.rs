@@ -1,14 +1,14 @@
 //! `rayweave overhead`: what strategies cost beside their work.
 
+use crate::files::PendingFile;
 use crate::options::{all_threads, chosen, parse_seconds, parse_threads, strategy_parser};
-use crate::output::PendingFile;
-use crate::watched::watched;
+use crate::with_noise::with_noise;
 use crate::{Outcome, print};
 use clap::Args;
 use rayweave_contract::Strategy;
 use rayweave_measure::Protocol;
 use rayweave_measure::overhead::Overhead;
-use rayweave_report::overhead::Report;
+use rayweave_output::overhead::Report;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -48,11 +48,12 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
         threads: arguments.threads.unwrap_or_else(all_threads),
         protocol: PROTOCOL.within(arguments.time_limit),
     };
-    let (study, machine, noise) =
-        watched(|bar| overhead.run(|strategy, fraction| bar.show(fraction, strategy.to_owned())));
+    let (study, machine, noise) = with_noise(|bar| {
+        overhead.run(|strategy, fraction| bar.show(fraction, strategy.to_owned()))
+    });
     let study = study.map_err(|e| e.to_string())?;
     let report = Report { study: &study, machine: &machine, noise: &noise };
     print(&format!("{}\n", report.table()))?;
     json.map_or(Ok(()), |file| file.finish(report.json().as_bytes()))?;
-    Ok(if study.holds() { Outcome::Held } else { Outcome::Failed })
+    Ok(if study.passed() { Outcome::Passed } else { Outcome::Failed })
 }

@@ -1,18 +1,18 @@
 //! `rayweave predict`: what more threads would make of a picture.
 
+use crate::files::{PendingFile, distinct_files};
 use crate::input::Input;
 use crate::options::{
     SceneOptions, TileOption, all_threads, chosen, parse_seconds, parse_thread_counts,
     strategy_parser,
 };
-use crate::output::{PendingFile, distinct_files};
-use crate::watched::watched;
+use crate::with_noise::with_noise;
 use crate::{Outcome, print};
 use clap::Args;
 use rayweave_contract::Strategy;
 use rayweave_measure::Protocol;
 use rayweave_measure::forecast::{Question, Stage};
-use rayweave_report::forecast::Report;
+use rayweave_output::forecast::Report;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -74,7 +74,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
         Stage::Renderings => "renderings",
     };
     let (forecast, machine, noise) =
-        watched(|bar| question.answer(|stage, fraction| bar.show(fraction, message(stage))));
+        with_noise(|bar| question.answer(|stage, fraction| bar.show(fraction, message(stage))));
     let forecast = forecast.map_err(|e| format!("{}: {e}", input.name))?;
     let report = Report {
         scene: &input.name,
@@ -88,5 +88,5 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     print(&format!("{}\n{}\n", report.table(), input.arithmetic_line()))?;
     json.map_or(Ok(()), |file| file.finish(report.json().as_bytes()))?;
     svg.map_or(Ok(()), |file| file.finish(report.svg()?.as_bytes()))?;
-    Ok(if forecast.comparison.holds() { Outcome::Held } else { Outcome::Failed })
+    Ok(if forecast.comparison.passed() { Outcome::Passed } else { Outcome::Failed })
 }

@@ -1,10 +1,10 @@
 //! `rayweave render`: a picture.
 
+use crate::files::{PendingFile, distinct_files};
 use crate::input::Input;
 use crate::options::{SceneOptions, TileOption, all_threads, parse_threads, strategy_parser};
-use crate::output::{PendingFile, distinct_files};
 use crate::picture::Format;
-use crate::progress::Watched;
+use crate::progress::ProgressWork;
 use crate::{Outcome, print};
 use clap::Args;
 use rayweave_contract::{Plan, Strategy, Work};
@@ -54,13 +54,13 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let work = input.work(input.width, input.height)?;
     let preparing = begin.elapsed().as_secs_f64();
     let mut renderer = strategy.prepare(plan).map_err(|e| e.to_string())?;
-    let watched = Watched::new(&*work, picture.pixels().len() as u64);
-    // Watched only where somebody sees it: the bar takes its share of the time.
-    let work: &dyn Work = if watched.is_seen() { &watched } else { &*work };
+    let progress = ProgressWork::new(&*work, picture.pixels().len() as u64);
+    // Only where it is seen: the bar takes its share of the time.
+    let work: &dyn Work = if progress.is_seen() { &progress } else { &*work };
     let begin = Instant::now();
     let result = renderer.render(work, &mut picture);
     let seconds = begin.elapsed().as_secs_f64();
-    watched.finish();
+    progress.finish();
     result.map_err(|e| e.to_string())?;
 
     file.finish(&format.encode(&picture)?)?;
@@ -70,10 +70,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
         input.describe(),
         strategy.name(),
         picture.digest().short(),
-        rayweave_report::machine::text(&Machine::here()),
+        rayweave_output::machine::text(&Machine::here()),
         path.display(),
     ))?;
-    Ok(Outcome::Held)
+    Ok(Outcome::Passed)
 }
 
 /// What of the tracer the scene uses; each line ends.

@@ -1,64 +1,55 @@
-//! `rayweave sample`: what `compare` starts for each of its samples. Not for people, so `--help`
-//! does not list it.
+//! `rayweave sample`: the process that `compare` starts for each of its samples. Not for people, so
+//! `--help` does not list it.
 
-use crate::child::{Answer, Rendered};
 use crate::input::Input;
-use crate::options::{SceneOptions, TileOption, parse_threads, strategy_parser};
+use crate::options::checked_tile;
+use crate::subprocess::{Answer, Job};
 use crate::{Outcome, print};
 use clap::Args;
-use rayweave_contract::{Rect, Strategy};
+use rayweave_contract::Rect;
 use rayweave_core::primary_rays;
-use rayweave_measure::Stopwatch;
+use rayweave_measure::InProcessExecutor;
 use rayweave_measure::compare::{Entry, Executor};
-use std::num::NonZeroUsize;
-use std::path::PathBuf;
+use std::path::Path;
 
 #[derive(Args)]
 pub struct Arguments {
-    /// Scene file [default: the report's scene, built in]
-    scene: Option<PathBuf>,
-    /// Strategy to render with
-    #[arg(long, value_name = "NAME", value_parser = strategy_parser())]
-    strategy: &'static dyn Strategy,
-    /// Number of computing threads
-    #[arg(long, value_name = "N", value_parser = parse_threads)]
-    threads: NonZeroUsize,
-    #[command(flatten)]
-    tile: TileOption,
-    /// Render once and count the rays, instead of twice with all times
-    #[arg(long)]
-    count_rays: bool,
-    #[command(flatten)]
-    options: SceneOptions,
+    /// The rendering to do, as JSON
+    #[arg(value_parser = parse_job)]
+    job: Job,
+}
+
+/// A job, for clap.
+fn parse_job(text: &str) -> Result<Job, String> {
+    serde_json::from_str(text).map_err(|e| format!("not a job in JSON: {e}"))
 }
 
 pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     end_with_parent();
-    // Whoever started this reads the answer and nothing else: a failure is one, too.
-    let answer = measure(arguments).map_or_else(Answer::Failed, Answer::Rendered);
+    // The parent reads the answer and nothing else, so a failure is an answer, too.
+    let answer = measure(&arguments.job);
     print(&format!("{}\n", serde_json::to_string(&answer).map_err(|e| e.to_string())?))?;
-    Ok(Outcome::Held)
+    Ok(Outcome::Passed)
 }
 
-fn measure(arguments: &Arguments) -> Result<Rendered, String> {
-    let input = Input::load(arguments.scene.as_deref(), &arguments.options)?;
+fn measure(job: &Job) -> Answer {
+    let input = Input::load(job.scene.as_deref().map(Path::new), &job.options)?;
     let (width, height) = (input.width, input.height);
-    let tile = arguments.tile.of(width, height)?;
+    let tile = checked_tile(job.tile, width, height)?;
+    let strategy = rayweave_registry::find(&job.strategy)
+        .ok_or_else(|| format!("there is no strategy {}", job.strategy))?;
     let work = input.work(width, height)?;
-    let entry = Entry { strategy: arguments.strategy, threads: arguments.threads };
+    let entry = Entry { strategy, threads: job.threads };
     let rays = |tile: Rect| {
         primary_rays(tile.width, tile.height, &input.scene.render, input.execution.share_samples)
     };
-    let stopwatch = Stopwatch::new(&*work, width, height, tile).map_err(|e| e.to_string())?;
-    let mut stopwatch = stopwatch.counting(&rays);
-    if arguments.count_rays {
-        return stopwatch.warm_up(&entry).map(Rendered::from);
-    }
-    Ok(Rendered::from((stopwatch.one_shot_and_again(&entry)?, None)))
+    let executor = InProcessExecutor::new(&*work, width, height, tile);
+    let mut executor = executor.map_err(|e| e.to_string())?.counting(&rays);
+    if job.count_rays { executor.warm_up(&entry) } else { executor.cold_and_warm(&entry) }
 }
 
-/// Whatever ends the parent, this process does not go on computing beside what somebody measures
-/// next.
+/// Makes the end of the parent end this process too, so that it does not disturb a later
+/// measurement.
 fn end_with_parent() {
     #[cfg(target_os = "linux")]
     // Where it is refused, the process ends by itself when it has rendered.

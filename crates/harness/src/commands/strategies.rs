@@ -28,5 +28,5 @@ pub fn run() -> Result<Outcome, String> {
         }
     }
     print(&text)?;
-    Ok(Outcome::Held)
+    Ok(Outcome::Passed)
 }

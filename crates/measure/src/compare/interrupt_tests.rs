@@ -1,4 +1,4 @@
-//! Measurements that somebody ends.
+//! Measurements that are interrupted.
 
 use super::tests::{QUEUE, REFERENCE, entry, fake, protocol, right};
 use super::*;
@@ -26,8 +26,8 @@ fn what_is_interrupted_is_of_the_complete_rounds() {
         let comparison = interrupted_in(1 + 3 + 7 * 3 + turn + 1).expect("enough rounds");
         assert_eq!((comparison.rounds, comparison.interrupted), (7, true), "turn {turn}");
         for row in &comparison.rows {
-            assert!(row.holds() && row.figures.is_some(), "turn {turn}: {row:?}");
-            assert_eq!(row.samples.len(), 7, "turn {turn}: {}", row.strategy);
+            assert!(row.passed() && row.speedup.is_some(), "turn {turn}: {row:?}");
+            assert_eq!(row.samples_ns.len(), 7, "turn {turn}: {}", row.strategy);
         }
     }
     let all = protocol(8, 10, u64::MAX).run(&REFERENCE, &[], &mut fake(|_, _| right(1)), |_| {});

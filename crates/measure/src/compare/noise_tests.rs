@@ -4,7 +4,7 @@
 use super::tests::{Named, QUEUE, REFERENCE, entry, picture};
 use super::*;
 use crate::random::SplitMix64;
-use crate::statistics::median;
+use crate::statistics::{Interval, median};
 
 /// A machine with noise: all times drift together, each is a little off, and some are disturbed.
 struct Noisy {
@@ -22,7 +22,7 @@ impl Noisy {
 }
 
 impl Executor for Noisy {
-    fn render(&mut self, entry: &Entry<'_>) -> Result<Rendering, String> {
+    fn render(&mut self, entry: &Entry<'_>) -> Result<Sample, String> {
         let slowdown = if entry.strategy.name() == QUEUE.name() { self.slowdown } else { 1.0 };
         // A clock rate that swings by 5 % within a minute or so.
         let drift = 1.0 + 0.05 * (self.clock / 10.0).sin();
@@ -31,8 +31,7 @@ impl Executor for Noisy {
         let disturbance = if disturbed { -0.1 * (1.0 - self.random.fraction()).ln() } else { 0.0 };
         let seconds = 0.1 * slowdown * drift * (noise + disturbance);
         self.clock += seconds;
-        let sample = Sample { render_ns: (seconds * 1e9) as u64, ..Sample::default() };
-        Ok(Rendering { sample, digest: picture(1.0), first_digest: None })
+        Ok(Sample::new(0, (seconds * 1e9) as u64, picture(1.0)))
     }
 
     fn elapsed(&self) -> Duration {
@@ -64,7 +63,7 @@ const ROUNDS: Protocol =
 #[test]
 fn the_control_has_one_in_its_interval() {
     let controls: Vec<Interval> =
-        runs(1000, ROUNDS, 1.0).iter().map(|run| run.control().expect("figures")).collect();
+        runs(1000, ROUNDS, 1.0).iter().map(|run| run.rows[1].speedup.expect("figures")).collect();
     let contained = contain_one(&controls);
     assert!(contained >= 950, "{contained} of 1000");
     let widths: Vec<f64> = controls.iter().map(|interval| interval.high - interval.low).collect();
@@ -75,7 +74,7 @@ fn the_control_has_one_in_its_interval() {
 /// 9 of 10 runs.
 #[test]
 fn three_percent_are_found() {
-    let speedup = |run: &Comparison| run.rows[2].figures.expect("figures").speedup;
+    let speedup = |run: &Comparison| run.rows[2].speedup.expect("figures");
     let slower: Vec<Interval> = runs(200, ROUNDS, 1.03).iter().map(speedup).collect();
     let missed = contain_one(&slower);
     assert!(missed <= 20, "missed by {missed} of 200");
@@ -95,13 +94,14 @@ fn a_goal_ends_the_rounds_and_keeps_the_promise() {
     let runs = runs(200, protocol, 1.0);
     for run in &runs {
         assert!(run.rounds >= protocol.min_rounds);
-        let figures = run.rows.iter().map(|row| row.figures.expect("figures"));
-        assert!(figures.into_iter().all(|figures| figures.speedup.relative_half_width() <= goal));
+        let mut speedups = run.rows.iter().map(|row| row.speedup.expect("figures"));
+        assert!(speedups.all(|speedup| speedup.relative_half_width() <= goal));
     }
     let rounds: Vec<f64> = runs.iter().map(|run| run.rounds as f64).collect();
     let typical = median(&rounds).expect("runs");
     assert!((8.0..40.0).contains(&typical), "{typical}");
-    let controls: Vec<Interval> = runs.iter().map(|run| run.control().expect("figures")).collect();
+    let controls: Vec<Interval> =
+        runs.iter().map(|run| run.rows[1].speedup.expect("figures")).collect();
     let contained = contain_one(&controls);
     assert!(contained >= 190, "{contained} of 200 after {typical} rounds");
 }
@@ -112,7 +112,7 @@ fn a_row_that_failed_is_waited_for_by_nobody() {
     struct Fails(Noisy);
 
     impl Executor for Fails {
-        fn render(&mut self, entry: &Entry<'_>) -> Result<Rendering, String> {
+        fn render(&mut self, entry: &Entry<'_>) -> Result<Sample, String> {
             if entry.strategy.name() == BROKEN.name() {
                 Err("gone".to_owned())
             } else {

@@ -1,6 +1,7 @@
 //! The protocol's logic, with a clock and renderings that are made up.
 
 use super::*;
+use crate::statistics::Interval;
 use rayweave_contract::{
     Granularity, Image, Output, Plan, Policy, Renderer, Scheduling, StrategyError, Threads,
 };
@@ -48,13 +49,12 @@ pub(super) struct Fake<F> {
     pub(super) interrupted_in: usize,
 }
 
-impl<F: FnMut(&'static str, usize) -> Result<Rendering, String>> Executor for Fake<F> {
-    fn render(&mut self, entry: &Entry<'_>) -> Result<Rendering, String> {
+impl<F: FnMut(&'static str, usize) -> Result<Sample, String>> Executor for Fake<F> {
+    fn render(&mut self, entry: &Entry<'_>) -> Result<Sample, String> {
         let name = entry.strategy.name();
         let result = (self.answer)(name, self.calls.iter().filter(|&&call| call == name).count());
         self.calls.push(name);
-        self.clock +=
-            Duration::from_nanos(result.as_ref().map_or(0, |rendering| rendering.sample.render_ns));
+        self.clock += Duration::from_nanos(result.as_ref().map_or(0, |sample| sample.render_ns));
         result
     }
 
@@ -67,9 +67,7 @@ impl<F: FnMut(&'static str, usize) -> Result<Rendering, String>> Executor for Fa
     }
 }
 
-pub(super) fn fake<F: FnMut(&'static str, usize) -> Result<Rendering, String>>(
-    answer: F,
-) -> Fake<F> {
+pub(super) fn fake<F: FnMut(&'static str, usize) -> Result<Sample, String>>(answer: F) -> Fake<F> {
     Fake { answer, calls: Vec::new(), clock: Duration::ZERO, interrupted_in: usize::MAX }
 }
 
@@ -77,13 +75,12 @@ pub(super) fn picture(brightness: f32) -> Digest {
     Image::filled(1, 1, [brightness; 3]).expect("a pixel").digest()
 }
 
-pub(super) fn right(render_ns: u64) -> Result<Rendering, String> {
-    let sample = Sample { prepare_ns: 7, render_ns, ..Sample::default() };
-    Ok(Rendering { sample, digest: picture(1.0), first_digest: None })
+pub(super) fn right(render_ns: u64) -> Result<Sample, String> {
+    Ok(Sample::new(7, render_ns, picture(1.0)))
 }
 
-pub(super) fn wrong(render_ns: u64) -> Result<Rendering, String> {
-    right(render_ns).map(|rendering| Rendering { digest: picture(0.5), ..rendering })
+pub(super) fn wrong(render_ns: u64) -> Result<Sample, String> {
+    right(render_ns).map(|sample| Sample { digest: picture(0.5), ..sample })
 }
 
 pub(super) fn entry(strategy: &Named, threads: usize) -> Entry<'_> {
@@ -100,7 +97,7 @@ pub(super) fn protocol(min_rounds: usize, max_rounds: usize, budget_ns: u64) -> 
     }
 }
 
-fn run<F: FnMut(&'static str, usize) -> Result<Rendering, String>>(
+fn run<F: FnMut(&'static str, usize) -> Result<Sample, String>>(
     protocol: Protocol,
     executor: &mut Fake<F>,
 ) -> Comparison {
@@ -137,15 +134,8 @@ fn rows_are_reference_control_and_contenders() {
     let comparison =
         protocol(1, 1, 0).run(&REFERENCE, &entries, &mut executor, |_| {}).expect("a picture");
     let rows: Vec<_> =
-        comparison.rows.iter().map(|row| (row.strategy, row.threads, row.role)).collect();
-    assert_eq!(
-        rows,
-        [
-            ("reference", 1, Role::Reference),
-            ("reference", 1, Role::Control),
-            ("pool", 2, Role::Contender)
-        ]
-    );
+        comparison.rows.iter().map(|row| (&*row.strategy, row.threads, row.control)).collect();
+    assert_eq!(rows, [("reference", 1, false), ("reference", 1, true), ("pool", 2, false)]);
 }
 
 #[test]
@@ -154,13 +144,13 @@ fn the_warm_up_is_verified_and_not_counted() {
     let mut executor = fake(|_, call| right(if call == 0 { 100_000 } else { 100 }));
     let comparison = run(protocol(5, 5, u64::MAX), &mut executor);
     for row in &comparison.rows[2..] {
-        assert_eq!(row.samples, [Sample { prepare_ns: 7, render_ns: 100, ..Sample::default() }; 5]);
+        assert_eq!((&row.samples_ns, &row.prepare_samples_ns), (&vec![100; 5], &vec![7; 5]));
     }
 
     let mut executor =
         fake(|name, call| if name == "pool" && call == 0 { wrong(1) } else { right(1) });
     let comparison = run(protocol(5, 5, u64::MAX), &mut executor);
-    assert!(!comparison.rows[2].identical && comparison.rows[2].samples.is_empty());
+    assert!(!comparison.rows[2].identical && comparison.rows[2].samples_ns.is_empty());
 }
 
 #[test]
@@ -175,13 +165,12 @@ fn a_speedup_is_the_median_of_the_ratios_within_a_round() {
         right(if name == "pool" { slow / 2 } else { slow })
     });
     let comparison = run(protocol(5, 5, u64::MAX), &mut executor);
-    let figures = comparison.rows[2].figures.expect("figures");
-    assert_eq!(figures.speedup, Interval { median: 2.0, low: 2.0, high: 2.0 });
-    assert_eq!((figures.efficiency, figures.serial_fraction), (1.0, Some(0.0)));
-    assert_eq!((figures.median_ns, figures.prepare_ns), (2000.0, 7.0));
-    let queue = comparison.rows[3].figures.expect("figures");
-    assert_eq!((queue.efficiency, queue.serial_fraction), (0.25, Some(1.0)));
-    assert_eq!(comparison.control(), Some(Interval { median: 1.0, low: 1.0, high: 1.0 }));
+    let [_, control, pool, queue] = &comparison.rows[..] else { panic!("four rows") };
+    let exactly = |ratio| Some(Interval { median: ratio, low: ratio, high: ratio });
+    assert_eq!((pool.speedup, control.speedup), (exactly(2.0), exactly(1.0)));
+    assert_eq!((pool.efficiency, pool.serial_fraction), (Some(1.0), Some(0.0)));
+    assert_eq!((pool.median_ns, pool.prepare_ns), (Some(2000), Some(7)));
+    assert_eq!((queue.efficiency, queue.serial_fraction), (Some(0.25), Some(1.0)));
 }
 
 #[test]
@@ -191,29 +180,26 @@ fn a_wrong_picture_ends_its_row_and_no_other() {
         fake(|name, call| if name == "pool" && call >= 3 { wrong(1) } else { right(4) });
     let comparison = run(protocol(6, 6, u64::MAX), &mut executor);
     let pool = &comparison.rows[2];
-    assert!(!pool.identical && !pool.holds() && !comparison.holds());
+    assert!(!pool.identical && !pool.passed() && !comparison.passed());
     assert_eq!(pool.digest, Some(picture(0.5)));
-    assert_eq!(pool.samples.len(), 2, "the times of a wrong picture are no sample");
-    assert_eq!(pool.figures, None);
+    assert_eq!(pool.samples_ns.len(), 2, "the times of a wrong picture are no sample");
+    assert_eq!((pool.median_ns, pool.speedup), (None, None));
     assert_eq!(executor.calls.iter().filter(|&&name| name == "pool").count(), 4);
 
     let queue = &comparison.rows[3];
-    assert!(queue.holds() && queue.figures.is_some());
-    assert_eq!((queue.samples.len(), queue.digest), (6, Some(comparison.digest)));
+    assert!(queue.passed() && queue.speedup.is_some());
+    assert_eq!((queue.samples_ns.len(), queue.digest), (6, Some(comparison.digest)));
 }
 
 /// Catches a first picture that nobody looks at, and its time in that of the second.
 #[test]
 fn both_pictures_of_a_fresh_process_are_verified() {
-    let both = |render_ns, first| {
-        right(render_ns).map(|Rendering { sample, digest, .. }| Rendering {
-            sample: Sample {
-                one_shot_ns: Some(3 * render_ns),
-                cpu_ns: Some(2 * render_ns),
-                ..sample
-            },
-            digest,
-            first_digest: Some(picture(first)),
+    let both = |render_ns, cold| {
+        right(render_ns).map(|sample| Sample {
+            cold_ns: Some(3 * render_ns),
+            cpu_ns: Some(2 * render_ns),
+            cold_digest: Some(picture(cold)),
+            ..sample
         })
     };
     let mut executor = fake(|name, call| match (name, call) {
@@ -222,17 +208,16 @@ fn both_pictures_of_a_fresh_process_are_verified() {
         _ => both(10, 1.0),
     });
     let comparison = run(protocol(6, 6, u64::MAX), &mut executor);
-    let figures = comparison.rows[2].figures.expect("figures");
-    assert_eq!((figures.median_ns, figures.cpu_ns), (5.0, Some(10.0)));
-    let speedup = Interval { median: 2.0, low: 2.0, high: 2.0 };
-    assert_eq!(figures.one_shot, Some(OneShot { median_ns: 15.0, speedup }));
-    let queue = &comparison.rows[3];
-    assert!(!queue.identical && queue.samples.len() == 2);
+    let [_, _, pool, queue] = &comparison.rows[..] else { panic!("four rows") };
+    assert_eq!((pool.median_ns, pool.cpu_ns, pool.cold_ns), (Some(5), Some(10), Some(15)));
+    assert_eq!(pool.cold_speedup, Some(Interval { median: 2.0, low: 2.0, high: 2.0 }));
+    assert!(!queue.identical && queue.samples_ns.len() == 2);
     assert_eq!((queue.digest, &queue.error), (Some(picture(0.5)), &None));
 
     let comparison = run(protocol(1, 1, 0), &mut fake(|_, _| right(1)));
-    let figures = comparison.rows[2].figures.expect("figures");
-    assert_eq!((figures.one_shot, figures.cpu_ns), (None, None));
+    let pool = &comparison.rows[2];
+    assert_eq!((pool.cold_ns, pool.cold_speedup, pool.cpu_ns), (None, None, None));
+    assert!(pool.speedup.is_some());
 }
 
 #[test]
@@ -246,9 +231,9 @@ fn an_error_ends_its_row_and_no_other() {
     let comparison = run(protocol(6, 6, u64::MAX), &mut executor);
     let queue = &comparison.rows[3];
     assert_eq!(queue.error.as_deref(), Some("no threads"));
-    assert!(!queue.holds() && queue.identical, "the pictures before the error were right");
-    assert_eq!((queue.samples.len(), queue.figures), (1, None));
-    assert_eq!(comparison.rows[2].samples.len(), 6);
+    assert!(!queue.passed() && queue.identical, "the pictures before the error were right");
+    assert_eq!((queue.samples_ns.len(), queue.speedup), (1, None));
+    assert_eq!(comparison.rows[2].samples_ns.len(), 6);
 
     let mut executor =
         fake(|name, _| if name == "queue" { Err("no threads".to_owned()) } else { right(4) });
@@ -258,7 +243,7 @@ fn an_error_ends_its_row_and_no_other() {
 
 #[test]
 fn without_a_right_reference_there_are_no_figures() {
-    let failures: [fn() -> Result<Rendering, String>; 2] =
+    let failures: [fn() -> Result<Sample, String>; 2] =
         [|| wrong(1), || Err("no memory".to_owned())];
     for failure in failures {
         // The picture, the warm-up of the reference and its control, two rounds of both, then the
@@ -266,8 +251,12 @@ fn without_a_right_reference_there_are_no_figures() {
         let mut executor =
             fake(|name, call| if name == "reference" && call >= 7 { failure() } else { right(4) });
         let comparison = run(protocol(6, 6, u64::MAX), &mut executor);
-        assert!(!comparison.rows[0].holds() && comparison.rows[2].holds() && !comparison.holds());
-        assert!(comparison.rows.iter().all(|row| row.figures.is_none() && row.samples.len() >= 2));
+        assert!(
+            !comparison.rows[0].passed() && comparison.rows[2].passed() && !comparison.passed()
+        );
+        assert!(
+            comparison.rows.iter().all(|row| row.speedup.is_none() && row.samples_ns.len() >= 2)
+        );
     }
 }
 
@@ -321,15 +310,14 @@ fn progress_only_grows_and_stays_below_one() {
 struct Counting<E>(E);
 
 impl<E: Executor> Executor for Counting<E> {
-    fn render(&mut self, entry: &Entry<'_>) -> Result<Rendering, String> {
+    fn render(&mut self, entry: &Entry<'_>) -> Result<Sample, String> {
         self.0.render(entry)
     }
 
-    fn warm_up(&mut self, entry: &Entry<'_>) -> Result<(Rendering, Option<Rays>), String> {
-        let redundant = entry.threads.get() as u64;
-        self.0
-            .render(entry)
-            .map(|rendering| (rendering, Some(Rays { primary: 2 * redundant, redundant })))
+    fn warm_up(&mut self, entry: &Entry<'_>) -> Result<Sample, String> {
+        let threads = entry.threads.get() as u64;
+        let (primary_rays, redundant_rays) = (Some(2 * threads), Some(threads));
+        self.0.render(entry).map(|sample| Sample { primary_rays, redundant_rays, ..sample })
     }
 
     fn elapsed(&self) -> Duration {
@@ -348,10 +336,10 @@ fn rays_are_those_of_a_right_picture_in_the_warm_up() {
     let comparison = protocol(3, 3, u64::MAX)
         .run(&REFERENCE, &entries, &mut executor, |_| {})
         .expect("a picture");
-    let rays: Vec<Option<Rays>> = comparison.rows.iter().map(|row| row.rays).collect();
-    let counted = |redundant| Some(Rays { primary: 2 * redundant, redundant });
-    assert_eq!(rays, [counted(1), counted(1), None, counted(4)]);
+    let rays = comparison.rows.iter().map(|row| (row.primary_rays, row.redundant_rays));
+    let counted = |threads| (Some(2 * threads), Some(threads));
+    assert!(rays.eq([counted(1), counted(1), (None, None), counted(4)]));
 
     let comparison = run(protocol(1, 1, 0), &mut fake(|_, _| right(1)));
-    assert!(comparison.rows.iter().all(|row| row.rays.is_none()), "nobody counted");
+    assert!(comparison.rows.iter().all(|row| row.primary_rays.is_none()), "nobody counted");
 }

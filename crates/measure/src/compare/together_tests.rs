@@ -2,6 +2,7 @@
 
 use super::tests::{POOL, REFERENCE, entry, protocol, right, wrong};
 use super::*;
+use crate::statistics::{Interval, ratio_interval};
 use std::cell::RefCell;
 
 /// One of several executors: notes its calls where the others do, and moves the clock of all.
@@ -11,8 +12,8 @@ struct Part<'a, F> {
     answer: F,
 }
 
-impl<F: FnMut(&'static str, usize) -> Result<Rendering, String>> Executor for Part<'_, F> {
-    fn render(&mut self, entry: &Entry<'_>) -> Result<Rendering, String> {
+impl<F: FnMut(&'static str, usize) -> Result<Sample, String>> Executor for Part<'_, F> {
+    fn render(&mut self, entry: &Entry<'_>) -> Result<Sample, String> {
         let call = (self.number, entry.strategy.name());
         let before = self.calls.borrow().iter().filter(|&&earlier| earlier == call).count();
         self.calls.borrow_mut().push(call);
@@ -29,8 +30,8 @@ type Calls = Vec<(usize, &'static str)>;
 /// Two executors together, for some rounds, with the pool beside the reference.
 fn together(
     rounds: usize,
-    first: impl FnMut(&'static str, usize) -> Result<Rendering, String>,
-    second: impl FnMut(&'static str, usize) -> Result<Rendering, String>,
+    first: impl FnMut(&'static str, usize) -> Result<Sample, String>,
+    second: impl FnMut(&'static str, usize) -> Result<Sample, String>,
 ) -> ([Comparison; 2], Calls) {
     let calls = RefCell::default();
     let mut first = Part { number: 0, calls: &calls, answer: first };
@@ -57,13 +58,13 @@ fn together_each_round_has_the_rows_of_all() {
     let apart = |round: &[(usize, &str)]| round.is_sorted_by_key(|(number, _)| *number);
     assert!(!measured.chunks(6).all(apart), "one after the other: {measured:?}");
     for comparison in comparisons {
-        assert_eq!((comparison.rounds, comparison.rows.len(), comparison.holds()), (8, 3, true));
-        assert!(comparison.rows.iter().all(|row| row.samples.len() == 8));
+        assert_eq!((comparison.rounds, comparison.rows.len(), comparison.passed()), (8, 3, true));
+        assert!(comparison.rows.iter().all(|row| row.samples_ns.len() == 8));
     }
 }
 
 #[test]
-fn a_gain_is_the_median_of_the_ratios_within_a_round() {
+fn times_of_one_over_times_of_another_are_ratios_within_a_round() {
     // Rounds slow down by a factor that all share; the first's reference is called once more, for
     // the picture.
     let slow = |name, call: usize, first| match name {
@@ -75,17 +76,15 @@ fn a_gain_is_the_median_of_the_ratios_within_a_round() {
         |name, call| right(slow(name, call, 3)),
         |name, call| right(3 * slow(name, call, 2)),
     );
-    assert_eq!(a.gain_over(&b), Some(Interval { median: 3.0, low: 3.0, high: 3.0 }));
-    let third = b.gain_over(&a).expect("both have figures");
-    assert_eq!((third.low, third.high), (1.0 / 3.0, 1.0 / 3.0));
+    let [a, b] = [a, b].map(|mut comparison| comparison.rows.swap_remove(0).samples_ns);
+    assert_eq!(ratio_interval(&b, &a), Some(Interval { median: 3.0, low: 3.0, high: 3.0 }));
 }
 
 #[test]
 fn together_all_have_to_give_the_first_s_picture() {
     let ([a, b], _) = together(3, |_, _| right(1), |_, _| wrong(1));
-    assert!(a.holds() && a.rows[2].figures.is_some());
-    assert!(b.rows.iter().all(|row| !row.identical && row.figures.is_none()));
-    assert_eq!((a.gain_over(&b), b.gain_over(&a)), (None, None));
+    assert!(a.passed() && a.rows[2].speedup.is_some());
+    assert!(b.rows.iter().all(|row| !row.identical && row.speedup.is_none()));
 }
 
 #[test]
@@ -94,11 +93,15 @@ fn a_reference_that_fails_ends_its_own_comparison() {
         if name == "reference" && call >= 6 { Err("gone".to_owned()) } else { right(1) }
     };
     let ([a, b], _) = together(6, |_, _| right(1), fails);
-    assert!(a.holds() && a.rows.iter().all(|row| row.samples.len() == 6 && row.figures.is_some()));
+    assert!(
+        a.passed() && a.rows.iter().all(|row| row.samples_ns.len() == 6 && row.speedup.is_some())
+    );
     // Its warm-up and two rounds, each with the reference and its control, then the third.
-    assert!(b.rows.iter().all(|row| (2..=3).contains(&row.samples.len()) && row.figures.is_none()));
+    assert!(
+        b.rows.iter().all(|row| (2..=3).contains(&row.samples_ns.len()) && row.speedup.is_none())
+    );
 
     let ([a, b], calls) = together(6, fails, fails);
-    assert!(!a.holds() && !b.holds());
+    assert!(!a.passed() && !b.passed());
     assert!(calls.len() <= 1 + 6 + 3 * 6, "measured on without any reference: {}", calls.len());
 }

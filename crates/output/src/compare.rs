@@ -1,0 +1,231 @@
+//! The list of measurements of a comparison, and its views: table, JSON, CSV, Markdown, and the
+//! changes since an earlier list.
+//!
+//! Several scenes, shared samples beside unshared ones, or several sizes of tiles are more records
+//! in the list.
+
+mod changes;
+mod csv;
+#[cfg(test)]
+pub(crate) mod fixtures;
+mod markdown;
+mod scenes;
+mod schema_1;
+mod table;
+#[cfg(test)]
+mod tests;
+
+pub use changes::{Change, comparable};
+pub(crate) use table::complaint;
+
+use crate::json;
+use rayweave_contract::Digest;
+use rayweave_measure::statistics::ratio_interval;
+use rayweave_measure::{Interval, Machine, Measurement, Noise};
+use serde::{Deserialize, Serialize};
+
+/// The number of the JSON's form. It changes when a key changes its meaning or goes.
+const SCHEMA: u32 = 2;
+
+/// What was rendered and how: times of the same subject can be compared. All but the last four
+/// change the image.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Subject {
+    /// The scene file's path as it was given, or another name.
+    pub scene: String,
+    /// Width of the image in pixels.
+    pub width: u32,
+    /// Height of the image in pixels.
+    pub height: u32,
+    /// Density of the samples; 0 is one ray a pixel.
+    pub antialiasing: u32,
+    /// Positions of the samples: "lattice" or "importance".
+    pub sampling: String,
+    /// Whether samples of a lattice are traced only where pixels differ.
+    pub adaptive: bool,
+    /// The tracer's formulas: "robust" or "textbook".
+    pub formulas: String,
+    /// The tracer's number type: "f32" or "f64".
+    pub precision: String,
+    /// The number of rays that are followed side by side.
+    pub lanes: usize,
+    /// Whether samples that neighbouring pixels of a tile have in common are traced once.
+    pub share_samples: bool,
+    /// The acceleration structure: "auto" or "none".
+    pub accel: String,
+    /// The side of a tile in pixels.
+    pub tile: u32,
+}
+
+/// One measurement with everything that was measured around it: one entry of `results`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Record {
+    /// What was rendered and how.
+    #[serde(flatten)]
+    pub subject: Subject,
+    /// The number of rounds that were measured.
+    pub rounds: usize,
+    /// Whether the measurement was interrupted after these.
+    pub interrupted: bool,
+    /// Whether the times are to be doubted because of [other programs](Noise::disturbed).
+    pub disturbed: bool,
+    /// The digest of the image that the strategy has to give, in hexadecimal.
+    pub reference_digest: String,
+    /// The cost of the dearest of `threads` equal ranges of tiles over their mean; known if several
+    /// scenes were compared.
+    pub imbalance: Option<f64>,
+    /// The share of the cost that the dearest tile has; known if several scenes were compared.
+    pub largest_tile: Option<f64>,
+    /// The strategy, its samples and figures.
+    #[serde(flatten)]
+    pub measurement: Measurement,
+}
+
+/// A list of measurements and what holds for all of them: what `--json` writes.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Results {
+    schema: u32,
+    /// The seed of the order within the rounds.
+    pub seed: u64,
+    /// The precision that was asked for: half of an interval as a share of its median.
+    pub precision_goal: Option<f64>,
+    /// The machine that was measured on.
+    pub machine: Machine,
+    /// What else went on there.
+    pub noise: Noise,
+    /// The reference's time without shared samples over its time with them, where both were
+    /// measured.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sharing_speedup: Option<Interval>,
+    /// The changes since an earlier list, where there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub changes: Option<Vec<Change>>,
+    /// Of each subject the reference, its control, then the strategies.
+    pub results: Vec<Record>,
+    /// The scenes that an interruption left out.
+    #[serde(default)]
+    pub not_measured: Vec<String>,
+    /// The reasons to doubt the changes.
+    #[serde(skip)]
+    doubts: Vec<String>,
+}
+
+impl Results {
+    /// Returns the list `results` with what was measured around it.
+    #[must_use]
+    pub fn new(machine: Machine, noise: Noise, results: Vec<Record>) -> Self {
+        let mut list = Self {
+            schema: SCHEMA,
+            seed: 0,
+            precision_goal: None,
+            machine,
+            noise,
+            sharing_speedup: None,
+            changes: None,
+            results,
+            not_measured: Vec::new(),
+            doubts: Vec::new(),
+        };
+        list.sharing_speedup = list.gain();
+        list
+    }
+
+    /// Reads the JSON of a list, of this schema or the one before.
+    ///
+    /// # Errors
+    ///
+    /// The text is not such a list, or of another schema.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let not_a_list = |e: serde_json::Error| format!("not the JSON of a comparison: {e}");
+        let object: serde_json::Value = serde_json::from_str(text).map_err(not_a_list)?;
+        let object = match object.get("schema").and_then(serde_json::Value::as_u64) {
+            Some(1) => schema_1::upgraded(object).map_err(not_a_list)?,
+            Some(theirs) if theirs != u64::from(SCHEMA) => {
+                return Err(format!(
+                    "its schema is {theirs}, and this program reads 1 to {SCHEMA}"
+                ));
+            }
+            _ => object,
+        };
+        serde_json::from_value(object).map_err(not_a_list)
+    }
+
+    /// Returns the list for programs: JSON that docs/compare-json.md describes.
+    #[must_use]
+    pub fn json(&self) -> String {
+        json::text(self)
+    }
+
+    /// Returns the list for spreadsheets: a line of names, then a line for each record, empty where
+    /// there is no figure.
+    #[must_use]
+    pub fn csv(&self) -> String {
+        csv::text(self)
+    }
+
+    /// Returns the list for a README: tables in Markdown, with the machine.
+    #[must_use]
+    pub fn markdown(&self) -> String {
+        let tables: String = self.groups().map(|group| markdown::text(self, group)).collect();
+        if self.has_several_scenes() { scenes::markdown(self) + &tables } else { tables }
+    }
+
+    /// Returns the list for people: plain text without colours or a newline at the end. One subject
+    /// has one table; several scenes stand beside each other.
+    #[must_use]
+    pub fn table(&self) -> String {
+        if self.has_several_scenes() { scenes::text(self) } else { table::text(self) }
+    }
+
+    /// Returns whether every strategy gave the reference's image, every time.
+    #[must_use]
+    pub fn passed(&self) -> bool {
+        self.results.iter().all(|record| record.measurement.passed())
+    }
+
+    /// Returns the records of each subject, the reference first.
+    fn groups(&self) -> impl Iterator<Item = &[Record]> {
+        self.results.chunk_by(|a, b| a.subject == b.subject)
+    }
+
+    fn has_several_scenes(&self) -> bool {
+        self.results.iter().any(|record| record.subject.scene != self.results[0].subject.scene)
+            || !self.not_measured.is_empty()
+    }
+
+    /// Computes the reference's time without shared samples over its time with them, round by
+    /// round.
+    fn gain(&self) -> Option<Interval> {
+        let reference = |shared| {
+            let group = self.groups().find(|group| group[0].subject.share_samples == shared)?;
+            group[0].measurement.median_ns.map(|_| &group[0])
+        };
+        let (shared, unshared) = (reference(true)?, reference(false)?);
+        let alike = Subject { share_samples: true, ..unshared.subject.clone() };
+        let [unshared, below] = [unshared, shared].map(|record| &record.measurement.samples_ns);
+        (alike == shared.subject).then(|| ratio_interval(unshared, below))?
+    }
+}
+
+impl Record {
+    /// Returns what a table calls the row.
+    fn label(&self) -> String {
+        let control = if self.measurement.control { " (control)" } else { "" };
+        format!("{}{control}", self.measurement.strategy)
+    }
+}
+
+/// Returns the interval that the control's speed-up has: the error of a table.
+fn control(group: &[Record]) -> Option<Interval> {
+    group.iter().find(|record| record.measurement.control)?.measurement.speedup
+}
+
+/// Returns the first digits of a digest, enough for a table.
+fn short(digest: &str) -> String {
+    digest.parse::<Digest>().map_or_else(|_| digest.to_owned(), |digest| digest.short())
+}
+
+/// Returns the scene's file without its folder.
+fn scene_file(scene: &str) -> &str {
+    scene.rsplit(['/', '\\']).next().unwrap_or_default()
+}

@@ -1,0 +1,348 @@
+//! What has changed from one list to another.
+
+use super::table::scene_name;
+use super::{Record, Results, Subject, control, scene_file};
+use crate::{json, style};
+use rayweave_measure::statistics::{median_ratio_interval, ratios};
+use rayweave_measure::{Interval, Measurement};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+/// A strategy now and then.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Change {
+    /// The scene's path as the later list has it.
+    pub scene: String,
+    /// Whether samples were shared.
+    pub share_samples: bool,
+    /// The strategy's name.
+    pub strategy: String,
+    /// The number of computing threads.
+    pub threads: usize,
+    /// The time now over the time then; `None` if one of them is missing.
+    pub time: Option<Interval>,
+    /// The same of the time over the reference's in the same run: what changed the whole machine
+    /// cancels.
+    pub relative_time: Option<Interval>,
+    /// "slower", "faster", "as before" or "not in both".
+    pub verdict: String,
+}
+
+/// Checks whether times of `subjects` can be compared with those of `then`, before any is taken. A
+/// scene may lie in another folder.
+///
+/// # Errors
+///
+/// One of them was not measured then; the message names the settings that differ.
+pub fn comparable(then: &Results, subjects: &[Subject]) -> Result<(), String> {
+    let missing = |subject: &&Subject| then.groups().all(|group| !is_same(&group[0], subject));
+    let Some(subject) = subjects.iter().find(missing) else { return Ok(()) };
+    // The differences from the subject that is most like it.
+    let differences = then.groups().map(|group| differences(&group[0].subject, subject));
+    let differences = differences.min_by_key(Vec::len).unwrap_or_default();
+    let differences = match &differences[..] {
+        [] => "it has no results".to_owned(),
+        differences => differences.join(", "),
+    };
+    Err(format!(
+        "{differences}: use the same scene and options, or measure a new baseline with these (--json)"
+    ))
+}
+
+/// Returns whether a record is of this subject, wherever the scene lies.
+fn is_same(record: &Record, subject: &Subject) -> bool {
+    differences(&record.subject, subject).is_empty()
+}
+
+fn differences(then: &Subject, now: &Subject) -> Vec<String> {
+    let (then, now) = (json::value(then), json::value(now));
+    let same = |key: &str, there: &Value, here: &Value| match (there.as_str(), here.as_str()) {
+        (Some(there), Some(here)) if key == "scene" => scene_file(there) == scene_file(here),
+        _ => there == here,
+    };
+    let keys = now.as_object().into_iter().flatten();
+    keys.filter(|(key, here)| !same(key, &then[*key], here))
+        .map(|(key, here)| format!("{key} is {} there and {here} here", then[key]))
+        .collect()
+}
+
+impl Results {
+    /// Adds the changes since `then` to the list: one for each record but the controls.
+    #[must_use]
+    pub fn compared_with(mut self, then: &Self) -> Self {
+        let changes = self.groups().flat_map(|now| changes(then.same_group(now), now)).collect();
+        self.changes = Some(changes);
+        self.doubts = doubts(&self, then);
+        self
+    }
+
+    /// Returns the records of the same subject in this list.
+    fn same_group(&self, now: &[Record]) -> &[Record] {
+        let same = |group: &&[Record]| is_same(&group[0], &now[0].subject);
+        self.groups().find(same).unwrap_or_default()
+    }
+}
+
+fn changes(then: &[Record], now: &[Record]) -> Vec<Change> {
+    let times = |record: &Record| match record.measurement.median_ns {
+        Some(_) => record.measurement.samples_ns.clone(),
+        None => Vec::new(),
+    };
+    let reference = |group: &[Record]| {
+        group.first().map(|record| record.measurement.samples_ns.clone()).unwrap_or_default()
+    };
+    let (reference_now, reference_then) = (reference(now), reference(then));
+    let change = |(place, record): (usize, &Record)| {
+        let row = &record.measurement;
+        let alike = |other: &&Measurement| {
+            (&other.strategy, other.threads, other.control) == (&row.strategy, row.threads, false)
+        };
+        let earlier = then.iter().filter(|record| alike(&&record.measurement)).map(times).next();
+        let (now, then) = (times(record), earlier.unwrap_or_default());
+        let time = median_ratio_interval(&floats(&now), &floats(&then));
+        let relative_time =
+            median_ratio_interval(&ratios(&now, &reference_now), &ratios(&then, &reference_then));
+        // The reference's relative time is always 1, so its own time decides.
+        let verdict = verdict(if place == 0 { time } else { relative_time });
+        Change {
+            scene: record.subject.scene.clone(),
+            share_samples: record.subject.share_samples,
+            strategy: row.strategy.clone(),
+            threads: row.threads,
+            time,
+            relative_time,
+            verdict: verdict.to_owned(),
+        }
+    };
+    now.iter().enumerate().filter(|(_, record)| !record.measurement.control).map(change).collect()
+}
+
+fn verdict(ratio: Option<Interval>) -> &'static str {
+    match ratio {
+        None => "not in both",
+        Some(interval) if interval.contains(1.0) => "as before",
+        Some(interval) if interval.low > 1.0 => "slower",
+        Some(_) => "faster",
+    }
+}
+
+fn floats(samples: &[u64]) -> Vec<f64> {
+    samples.iter().map(|&ns| ns as f64).collect()
+}
+
+/// Returns the reasons to believe no verdict, one a line.
+fn doubts(now: &Results, then: &Results) -> Vec<String> {
+    let mut lines = Vec::new();
+    if let Some(doubt) = doubt(now) {
+        lines.push(format!("This run {doubt}: believe no verdict, measure again."));
+    }
+    if let Some(doubt) = doubt(then) {
+        lines.push(format!("The baseline {doubt}: believe no verdict, measure a new baseline."));
+    }
+    let differs = |group: &[Record]| {
+        let then = then.same_group(group).first();
+        then.is_some_and(|then| then.reference_digest != group[0].reference_digest)
+    };
+    lines.extend(now.groups().filter(|group| differs(group)).map(|group| {
+        let scene = scene_name(&group[0]);
+        format!("The baseline drew ANOTHER IMAGE of {scene}: that may be all of the difference.")
+    }));
+    lines
+}
+
+/// Returns the reason why the times of a run are to be doubted, if there is one.
+fn doubt(results: &Results) -> Option<String> {
+    let off = |group: &[Record]| control(group).is_some_and(|control| !control.contains(1.0));
+    let causes = [
+        results.noise.disturbed.then_some("was disturbed"),
+        results.groups().any(off).then_some("has a control whose interval does not contain 1"),
+    ];
+    let causes: Vec<&str> = causes.into_iter().flatten().collect();
+    (!causes.is_empty()).then(|| causes.join(" and "))
+}
+
+const HEADER: [&str; 5] = [
+    "strategy",
+    "threads",
+    "time now / then\n[95 % interval]",
+    "the same, relative\nto the reference",
+    "verdict",
+];
+
+/// Returns the table of changes, if there is an earlier list.
+pub(super) fn text(results: &Results) -> Option<String> {
+    let changes = results.changes.as_ref()?;
+    let mut lines = vec![String::new(), "changes since the baseline".to_owned()];
+    let groups =
+        changes.chunk_by(|a, b| (&a.scene, a.share_samples) == (&b.scene, b.share_samples));
+    let several = results.groups().count() > 1;
+    for group in groups {
+        let samples = if group[0].share_samples { "shared" } else { "not shared" };
+        lines.push(String::new());
+        lines.extend(several.then(|| format!("{}, samples {samples}", group[0].scene)));
+        lines.push(style::table(HEADER, group.iter().map(cells), 1..=3));
+    }
+    lines.push(
+        "\nTwo runs differ by drift, too. The verdict therefore goes by the time relative to the \
+         reference\nof the same run, and for the reference by its own time.\n\
+         Expect one false alarm in twenty rows."
+            .to_owned(),
+    );
+    lines.extend(results.doubts.iter().cloned());
+    Some(lines.join("\n"))
+}
+
+fn cells(change: &Change) -> [String; HEADER.len()] {
+    let cell = |interval: Option<Interval>| {
+        interval.map_or_else(|| "-".to_owned(), style::precise_interval)
+    };
+    [
+        change.strategy.clone(),
+        change.threads.to_string(),
+        cell(change.time),
+        cell(change.relative_time),
+        change.verdict.clone(),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::fixtures::{results, subject};
+    use super::*;
+
+    /// The made-up list of six rounds, its reference and control `reference` and its pool `pool`
+    /// times as slow.
+    fn slowed(reference: f64, pool: f64) -> Results {
+        let mut results = results();
+        let noise = [0.99, 1.0, 1.01, 1.0, 0.995, 1.005, 1.0, 1.0];
+        for (record, (ns, factor)) in
+            results.results.iter_mut().zip([(2e9, reference), (2e9, reference), (1e9, pool)])
+        {
+            record.measurement.samples_ns =
+                noise.map(|noise| (ns * factor * noise) as u64).to_vec();
+        }
+        results
+    }
+
+    /// Catches a machine that is slower taken for a strategy that is, and a ratio that is upside
+    /// down.
+    #[test]
+    fn what_is_slower_and_what_is_the_machine() {
+        let then = slowed(1.0, 1.0);
+        let expect = |now: Results, reference: &str, pool: &str| {
+            let changes = now.compared_with(&then).changes.expect("changes");
+            let verdicts: Vec<_> =
+                changes.iter().map(|change| (&*change.strategy, &*change.verdict)).collect();
+            let [queue, many] = [("queue", "not in both"), ("many, \"too\" many", "not in both")];
+            assert_eq!(verdicts, [("sequential", reference), ("pool", pool), queue, many]);
+        };
+        expect(slowed(1.0, 1.0), "as before", "as before");
+        expect(slowed(1.0, 1.1), "as before", "slower");
+        expect(slowed(1.0, 0.9), "as before", "faster");
+        expect(slowed(1.1, 1.1), "slower", "as before");
+    }
+
+    #[test]
+    fn changes_for_people_and_programs() {
+        let now = slowed(1.0, 1.1).compared_with(&slowed(1.0, 1.0));
+        let text = now.table();
+        let line = text.lines().find(|line| line.starts_with("pool") && line.ends_with("slower"));
+        assert!(line.is_some_and(|line| line.contains("1.100 [1.0")), "{text}");
+        assert!(!text.contains("ANOTHER IMAGE"), "{text}");
+        let value: Value = serde_json::from_str(&now.json()).expect("JSON");
+        let change = &value["changes"][1];
+        assert_eq!((&change["strategy"], &change["verdict"]), (&"pool".into(), &"slower".into()));
+        assert!(change["relative_time"]["low"].as_f64() > Some(1.0), "{change}");
+
+        let mut then = slowed(1.0, 1.0);
+        then.results[0].reference_digest = "another".to_owned();
+        let told = slowed(1.0, 1.0).compared_with(&then).table();
+        assert!(told.contains("ANOTHER IMAGE of room"), "{told}");
+    }
+
+    /// Catches a verdict that rests on a run which was itself no good.
+    #[test]
+    fn doubtful_runs_are_told() {
+        let run = |drifted, disturbed| {
+            let mut run = slowed(1.0, 1.0);
+            run.noise.disturbed = disturbed;
+            if drifted {
+                let off = Interval { median: 0.9, low: 0.8, high: 0.99 };
+                run.results[1].measurement.speedup = Some(off);
+            }
+            run
+        };
+        let told = |then: &Results, now: Results| {
+            let text = now.compared_with(then).table();
+            let lines = text.lines().filter(|line| line.contains("believe no verdict"));
+            lines.map(str::to_owned).collect::<Vec<_>>()
+        };
+        let good = || run(false, false);
+        assert!(told(&good(), good()).is_empty(), "good runs are doubted");
+        for (drifted, disturbed, why) in [
+            (true, false, "has a control whose interval does not contain 1"),
+            (false, true, "was disturbed"),
+            (true, true, "was disturbed and has a control whose interval does not contain 1"),
+        ] {
+            let bad = || run(drifted, disturbed);
+            let then = format!("The baseline {why}: believe no verdict, measure a new baseline.");
+            assert_eq!(told(&bad(), good()), [then]);
+            let now = format!("This run {why}: believe no verdict, measure again.");
+            assert_eq!(told(&good(), bad()), [now]);
+        }
+    }
+
+    /// A setting that is changed, and how that is told.
+    type Setting = (fn(&mut Subject), &'static str);
+
+    /// Catches a setting that makes times incomparable and is not noticed.
+    #[test]
+    fn a_baseline_of_other_settings_is_refused() {
+        let check = |change: fn(&mut Subject)| {
+            let mut subject = subject();
+            change(&mut subject);
+            comparable(&results(), &[subject])
+        };
+        assert_eq!(check(|_| ()), Ok(()));
+        assert_eq!(check(|s| s.scene = "elsewhere/room".to_owned()), Ok(()));
+        let changes: [Setting; 12] = [
+            (|s| s.scene = "a/hall".to_owned(), "scene is \"room\" there and \"a/hall\" here"),
+            (|s| s.width = 501, "width is 500 there and 501 here"),
+            (|s| s.height = 1, "height is 400 there and 1 here"),
+            (|s| s.antialiasing = 3, "antialiasing is 2 there and 3 here"),
+            (
+                |s| s.sampling = "importance".to_owned(),
+                "sampling is \"lattice\" there and \"importance\" here",
+            ),
+            (|s| s.adaptive = true, "adaptive is false there and true here"),
+            (
+                |s| s.formulas = "textbook".to_owned(),
+                "formulas is \"robust\" there and \"textbook\" here",
+            ),
+            (|s| s.precision = "f64".to_owned(), "precision is \"f32\" there and \"f64\" here"),
+            (|s| s.lanes = 1, "lanes is 8 there and 1 here"),
+            (|s| s.share_samples = false, "share_samples is true there and false here"),
+            (|s| s.accel = "none".to_owned(), "accel is \"auto\" there and \"none\" here"),
+            (|s| s.tile = 16, "tile is 32 there and 16 here"),
+        ];
+        let help = "use the same scene and options, or measure a new baseline with these (--json)";
+        for (change, difference) in changes {
+            assert_eq!(check(change), Err(format!("{difference}: {help}")));
+        }
+        let both = check(|s| (s.lanes, s.tile) = (4, 7)).expect_err("another");
+        assert_eq!(
+            both,
+            format!("lanes is 8 there and 4 here, tile is 32 there and 7 here: {help}")
+        );
+    }
+
+    #[test]
+    fn what_is_no_list_is_refused() {
+        let refused = |text: &str| Results::parse(text).expect_err("no list");
+        assert!(refused("{}").starts_with("not the JSON of a comparison: "));
+        assert!(refused("[1]").starts_with("not the JSON of a comparison: "));
+        assert!(refused(r#"{"schema": 1}"#).starts_with("not the JSON of a comparison: "));
+        let later = r#"{"schema": 3, "digest": "", "results": []}"#;
+        assert_eq!(refused(later), "its schema is 3, and this program reads 1 to 2");
+    }
+}

@@ -1,0 +1,284 @@
+//! The list as one table with a column for each scene, and a sentence on each: which strategy wins
+//! and why.
+
+use super::table::scene_name;
+use super::{Record, Results, changes, markdown};
+use crate::{machine, style};
+use rayweave_contract::{Granularity, Scheduling};
+
+/// The imbalance below which the cost counts as even.
+const EVEN: f64 = 1.1;
+
+/// The time below which an image counts as nearly free: starting a few threads takes a percent of
+/// it.
+const FREE_NS: u64 = 10_000_000;
+
+pub(super) fn text(results: &Results) -> String {
+    let groups: Vec<&[Record]> = results.groups().collect();
+    let header = ["strategy".to_owned(), "threads".to_owned()];
+    let header: Vec<String> = header.into_iter().chain(names(&groups)).collect();
+    let rows = rows(&groups, |best| format!("* {best}"));
+    let mut lines = vec![
+        "speed-up over the reference of the same scene [95 % interval]; * the highest of a scene"
+            .to_owned(),
+        String::new(),
+        style::table(header, rows.into_iter(), 1..=1 + groups.len()),
+        String::new(),
+    ];
+    lines.extend(notes(results, &groups));
+    lines.push(machine::text(&results.machine));
+    lines.extend(changes::text(results));
+    lines.join("\n")
+}
+
+/// Returns the same table and sentences in Markdown.
+pub(super) fn markdown(results: &Results) -> String {
+    let groups: Vec<&[Record]> = results.groups().collect();
+    let rows = rows(&groups, |best| format!("**{best}**"));
+    markdown::summary(&names(&groups), &rows, &notes(results, &groups)) + "\n"
+}
+
+fn names(groups: &[&[Record]]) -> Vec<String> {
+    groups.iter().map(|group| scene_name(&group[0]).to_owned()).collect()
+}
+
+/// Returns a sentence on each scene, and what is to be doubted.
+fn notes(results: &Results, groups: &[&[Record]]) -> Vec<String> {
+    let mut lines: Vec<String> = groups.iter().map(|group| why(group)).collect();
+    let disturbed = groups.iter().filter(|group| group[0].disturbed);
+    let disturbed: Vec<&str> = disturbed.map(|group| scene_name(&group[0])).collect();
+    if !disturbed.is_empty() {
+        lines.push(format!("DISTURBED by other programs: {}.", disturbed.join(", ")));
+    }
+    let interrupted = groups.iter().map(|group| &group[0]).filter(|first| first.interrupted);
+    lines.extend(
+        interrupted.map(|first| {
+            format!("INTERRUPTED: {} after {} rounds.", scene_name(first), first.rounds)
+        }),
+    );
+    if !results.not_measured.is_empty() {
+        lines.push(format!(
+            "INTERRUPTED before it was measured: {}.",
+            results.not_measured.join(", ")
+        ));
+    }
+    lines
+}
+
+/// Returns each row's name, its threads and its speed-up in each scene, the highest of a scene
+/// `marked`.
+fn rows(groups: &[&[Record]], marked: impl Fn(String) -> String) -> Vec<Vec<String>> {
+    let cell = |group: &&[Record], wanted: &Record| {
+        let alike = |record: &&Record| {
+            record.label() == wanted.label()
+                && record.measurement.threads == wanted.measurement.threads
+        };
+        let record = group.iter().find(alike);
+        let Some(speedup) = record.and_then(|record| record.measurement.speedup) else {
+            return "failed".to_owned();
+        };
+        let best = winner(group).is_some_and(|best| alike(&best));
+        if best { marked(style::interval(speedup)) } else { style::interval(speedup) }
+    };
+    let first = groups.first().copied().unwrap_or_default();
+    let row = |record: &Record| {
+        let head = [record.label(), record.measurement.threads.to_string()];
+        head.into_iter().chain(groups.iter().map(|group| cell(group, record))).collect()
+    };
+    first.iter().map(row).collect()
+}
+
+/// Returns the record of the highest speed-up that is not the control.
+fn winner(group: &[Record]) -> Option<&Record> {
+    best(group, |record| !record.measurement.control)
+}
+
+fn best(group: &[Record], which: impl Fn(&Record) -> bool) -> Option<&Record> {
+    let median = |record: &Record| record.measurement.speedup.map(|speedup| speedup.median);
+    let records = group.iter().filter(|record| median(record).is_some() && which(record));
+    records.max_by(|a, b| median(a).unwrap_or_default().total_cmp(&median(b).unwrap_or_default()))
+}
+
+/// Returns a sentence or two: who wins, and which property of the cost makes the difference.
+fn why(group: &[Record]) -> String {
+    let name = scene_name(&group[0]);
+    let speedup = |record: &Record| record.measurement.speedup;
+    let Some((winner, won)) = winner(group).and_then(|record| Some((record, speedup(record)?)))
+    else {
+        return format!("{name}: nothing was measured.");
+    };
+    let others = || group.iter().filter(|record| !record.measurement.control);
+    let as_good =
+        others().filter(|row| speedup(row).is_some_and(|other| other.high >= won.low)).count() - 1;
+    let certain = others().filter(|row| speedup(row).is_some_and(|other| other.low > 1.0));
+    let certain: Vec<&str> = certain.map(|row| &*row.measurement.strategy).collect();
+    let strategy = &winner.measurement.strategy;
+    let verdict = if std::ptr::eq(winner, &raw const group[0]) {
+        format!("no strategy pays, {strategy} is first")
+    } else if certain.is_empty() {
+        format!("no strategy is certainly faster than one thread, {strategy} comes first")
+    } else if won.low <= 1.0 {
+        format!("{strategy} comes first; certainly faster than one thread: {}", certain.join(", "))
+    } else {
+        let scheduling = scheduling(&winner.measurement.scheduling);
+        format!("{strategy} ({scheduling}) is first, with {as_good} more within the intervals")
+    };
+    let mut parts = vec![format!("{name}: {verdict}")];
+    parts.extend(cost(group));
+    if let Some(ns) = group[0].measurement.median_ns.filter(|&ns| ns < FREE_NS) {
+        parts.push(format!(
+            "all pixels take {:.2} ms, so starting threads and scheduling count",
+            ns as f64 / 1e6
+        ));
+    }
+    parts.join("; ") + "."
+}
+
+/// Returns what the cost of the tiles allows the largest number of threads.
+fn cost(group: &[Record]) -> Vec<String> {
+    let Some(record) = group.iter().max_by_key(|record| record.measurement.threads) else {
+        return Vec::new();
+    };
+    let (threads, mut parts) = (record.measurement.threads, Vec::new());
+    if let Some(imbalance) = record.imbalance {
+        let (scheduling, tile) = (Scheduling::Static.to_string(), Granularity::Tile.to_string());
+        let equal = best(group, |record| {
+            let row = &record.measurement;
+            (&row.scheduling, &row.granularity, row.threads) == (&scheduling, &tile, threads)
+        });
+        let equal = equal.and_then(|record| record.measurement.speedup);
+        let measured =
+            equal.map(|equal| format!(", {:.2} was measured", equal.median)).unwrap_or_default();
+        let most = threads as f64 / imbalance;
+        parts.push(if imbalance < EVEN {
+            let percent = (imbalance - 1.0) * 100.0;
+            format!("the cost is even, equal shares of tiles differ by {percent:.0} %")
+        } else {
+            format!(
+                "equal shares of tiles: max over mean cost is {imbalance:.2}, so at most \
+                 {most:.2}{measured}"
+            )
+        });
+    }
+    if let Some(share) = record.largest_tile.filter(|share| share * threads as f64 > 1.0) {
+        parts.push(format!(
+            "one tile has {:.0} % of the cost, so whole tiles allow at most {:.2}",
+            share * 100.0,
+            1.0 / share
+        ));
+    }
+    parts
+}
+
+/// Returns in words how pieces are scheduled.
+fn scheduling(word: &str) -> &'static str {
+    match word {
+        "static" => "equal shares",
+        "guided" => "ever smaller chunks to whoever is free",
+        "work-stealing" => "shares, and half of another's to who is idle",
+        "recursive-split" => "halves of the range to who is idle",
+        _ => "the next piece to whoever is free",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::fixtures::{machine, noise, records};
+    use super::*;
+    use rayweave_measure::Interval;
+
+    /// The made-up list on two scenes: one even, one with three quarters of the cost in one tile,
+    /// where the pool loses to the reference.
+    fn two_scenes() -> Results {
+        let (mut even, mut corner) = (records(), records());
+        for (group, scene, costs) in [
+            (&mut even, "a/even.toml", (1.0, 1.0 / 9001.0)),
+            (&mut corner, "corner.toml", (6750.0, 0.75)),
+        ] {
+            for record in &mut *group {
+                record.subject.scene = scene.to_owned();
+                (record.imbalance, record.largest_tile) = (Some(costs.0), Some(costs.1));
+            }
+            // Of the largest number of threads, which the bound is for.
+            group[2].measurement.threads = 9000;
+            group[2].measurement.scheduling = "static".to_owned();
+        }
+        corner[2].measurement.speedup = Some(Interval { median: 0.9, low: 0.85, high: 0.95 });
+        corner[0].measurement.median_ns = Some(5_000_000);
+        let mut results = Results::new(machine(), noise(), [even, corner].concat());
+        results.not_measured = vec!["later.toml".to_owned()];
+        results
+    }
+
+    #[test]
+    fn the_winner_is_marked_and_the_reason_told() {
+        let text = two_scenes().table();
+        let line = |start: &str| {
+            text.lines().find(|line| line.starts_with(start)).unwrap_or_else(|| panic!("{text}"))
+        };
+        assert!(line("strategy").contains("even") && line("strategy").ends_with("corner"));
+        assert!(
+            line("pool").contains("* 1.95 [1.91, 2.01]")
+                && line("pool").ends_with("  0.90 [0.85, 0.95]")
+        );
+        assert!(
+            line("sequential  ").ends_with("* 1.00 [0.96, 1.06]")
+                && line("queue").contains("failed")
+        );
+        assert_eq!(
+            line("even:"),
+            "even: pool (equal shares) is first, with 0 more within the intervals; the cost is even, equal shares \
+             of tiles differ by 0 %."
+        );
+        assert_eq!(line("INTERRUPTED"), "INTERRUPTED before it was measured: later.toml.");
+        // 9000 threads and a tile more than that: the first range is the dear tile alone, 3/4 of
+        // all.
+        assert_eq!(
+            line("corner:"),
+            "corner: no strategy pays, sequential is first; \
+             equal shares of tiles: max over mean cost is 6750.00, so at most 1.33, 0.90 was measured; one tile has \
+             75 % of the cost, so whole tiles allow at most 1.33; all pixels take 5.00 ms, so starting threads and \
+             scheduling count."
+        );
+    }
+
+    /// Catches a winner that may be slower than a single thread.
+    #[test]
+    fn a_lead_within_the_interval_is_none() {
+        let mut group = records();
+        group[2].measurement.speedup = Some(Interval { median: 1.2, low: 0.9, high: 1.6 });
+        let told = why(&group);
+        let expected = ": no strategy is certainly faster than one thread, pool comes first.";
+        assert!(told.ends_with(expected), "{told}");
+
+        // Another is, though its median is lower.
+        group[3].measurement.speedup = Some(Interval { median: 1.1, low: 1.05, high: 1.2 });
+        let told = why(&group);
+        let expected = ": pool comes first; certainly faster than one thread: queue.";
+        assert!(told.ends_with(expected), "{told}");
+    }
+
+    #[test]
+    fn markdown_begins_with_who_wins_where() {
+        let markdown = two_scenes().markdown();
+        let (text, lines) = (two_scenes().table(), markdown.lines().collect::<Vec<_>>());
+        let head = "speed-up over the reference of the same scene [95 % interval]; the highest of a scene in bold";
+        assert_eq!(lines[..2], [head, ""]);
+        assert_eq!(lines[2..4], ["| strategy | threads | even | corner |", "|---|--:|--:|--:|"]);
+        assert_eq!(lines[4], "| sequential | 1 | 1.00 [0.96, 1.06] | **1.00 [0.96, 1.06]** |");
+        assert_eq!(lines[6], "| pool | 9000 | **1.95 [1.91, 2.01]** | 0.90 [0.85, 0.95] |");
+        let sentences: Vec<&str> =
+            lines.iter().filter_map(|line| line.strip_prefix("- ")).collect();
+        assert!(
+            sentences.len() == 3 && sentences.iter().all(|sentence| text.contains(sentence)),
+            "{markdown}"
+        );
+        assert_eq!(markdown.matches("| pool | 9000 | 1026 |").count(), 2, "{markdown}");
+        assert!(
+            markdown
+                .contains("| sequential (control) | 1 | 2010 | 1.00 [0.96, 1.06] | 100 % | 2512 |")
+        );
+        assert!(markdown.contains("| queue | 2 | wrong image | | | |"), "{markdown}");
+        assert!(markdown.contains("| many, \"too\" many | 9000 | failed | | | |"), "{markdown}");
+    }
+}

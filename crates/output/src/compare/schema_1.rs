@@ -1,0 +1,62 @@
+//! Lists that an earlier version wrote: schema 1 had an object for each subject, its settings
+//! beside its results.
+
+use serde::de::Error;
+use serde_json::{Map, Value, json};
+
+/// Returns the list that says the same in schema 2.
+pub(super) fn upgraded(mut file: Value) -> Result<Value, serde_json::Error> {
+    let unshared = file.as_object_mut().and_then(|file| file.remove("unshared"));
+    let objects = match file.get_mut("comparisons").map(Value::take) {
+        Some(Value::Array(comparisons)) => comparisons,
+        _ => [Some(file.clone()), unshared].into_iter().flatten().collect(),
+    };
+    let mut results = Vec::new();
+    for object in &objects {
+        let Some(old) = object.get("results").and_then(Value::as_array) else {
+            return Err(serde_json::Error::missing_field("results"));
+        };
+        results.extend(old.iter().map(|result| record(object, result)));
+    }
+    let first = objects.first().unwrap_or(&Value::Null);
+    // Its changes are left out: they can be computed again.
+    Ok(json!({
+        "schema": super::SCHEMA,
+        "seed": first["seed"],
+        "precision_goal": first["precision_goal"],
+        "machine": first["machine"],
+        "noise": first["noise"],
+        "sharing_speedup": first["sharing_speedup"],
+        "results": results,
+        "not_measured": file.get("not_measured").cloned().unwrap_or_else(|| json!([])),
+    }))
+}
+
+/// Returns one record from the settings of its object and its own keys.
+fn record(object: &Value, result: &Value) -> Value {
+    let keys = |value: &Value| value.as_object().cloned().unwrap_or_default();
+    let mut record: Map<String, Value> = keys(object);
+    for other in ["machine", "noise", "results", "changes"] {
+        record.remove(other);
+    }
+    let reference_digest = record.remove("digest").unwrap_or_default();
+    record.insert("reference_digest".to_owned(), reference_digest);
+    record.insert("disturbed".to_owned(), object["noise"]["disturbed"].as_bool().into());
+    let accel = if object["search"] == "exhaustive" { "none" } else { "auto" };
+    record.insert("accel".to_owned(), accel.into());
+    record.extend(keys(result));
+    let starts_threads = match result["threads_start"].as_str() {
+        Some("prepare") => "pool",
+        Some("render") => "per-render",
+        _ => "none",
+    };
+    record.insert("starts_threads".to_owned(), starts_threads.into());
+    // Lists that are not known were null.
+    let list = |list: &Value| if list.is_null() { json!([]) } else { list.clone() };
+    record.insert("cpu_samples_ns".to_owned(), list(&result["cpu_samples_ns"]));
+    let cold = &result["one_shot"];
+    record.insert("cold_ns".to_owned(), cold["median_ns"].clone());
+    record.insert("cold_speedup".to_owned(), cold["speedup"].clone());
+    record.insert("cold_samples_ns".to_owned(), list(&cold["samples_ns"]));
+    Value::Object(record)
+}

@@ -1,0 +1,269 @@
+//! The list as a table for people, one for each subject.
+
+use super::{Record, Results, Subject, changes, control, scene_file, short};
+use crate::{machine, noise, style};
+use rayweave_measure::{Interval, Measurement};
+
+const HEADER: [&str; 10] = [
+    "strategy",
+    "threads",
+    "median\nms",
+    "cold\nms",
+    "speed-up\n[95 % interval]",
+    "efficiency",
+    "serial\nfraction",
+    "rays",
+    "threads\nstart",
+    "identical",
+];
+
+/// The columns of numbers, which line up at their right.
+const NUMBERS: std::ops::RangeInclusive<usize> = 1..=7;
+
+/// The distance from 1 to which the control's interval may reach before the table warns.
+const TELLING: f64 = 0.05;
+
+/// The cell without a figure.
+const NONE: &str = "-";
+
+pub(super) fn text(results: &Results) -> String {
+    let mut lines: Vec<String> = Vec::new();
+    for group in results.groups() {
+        lines.extend(measured(group));
+        lines.extend(control(group).map(|interval| control_line(group, interval)));
+        lines.extend(results.precision_goal.map(|goal| goal_line(group, goal)));
+        lines.push(String::new());
+    }
+    lines.extend(legend(&results.results));
+    lines.extend(results.sharing_speedup.map(|gain| {
+        format!(
+            "sharing: without it {} takes {} times as long; both tables are of the same rounds.",
+            reference(&results.results),
+            style::interval(gain)
+        )
+    }));
+    lines.push(noise::text(&results.noise));
+    lines.push(machine::text(&results.machine));
+    lines.extend(changes::text(results));
+    lines.join("\n")
+}
+
+/// Returns the heading of a subject's table, the table, and what concerns this table alone.
+fn measured(group: &[Record]) -> Vec<String> {
+    let table = style::table(HEADER, group.iter().map(cells), NUMBERS);
+    let mut lines = vec![heading(group), String::new(), table, String::new()];
+    lines.extend(group.iter().filter_map(|record| complaint(&record.measurement)));
+    lines.push(computed(&group[0].subject));
+    lines
+}
+
+pub(super) fn heading(group: &[Record]) -> String {
+    let Record { subject, rounds, interrupted, reference_digest, .. } = &group[0];
+    let rays = match (subject.antialiasing, &*subject.sampling) {
+        (0, _) => "one ray a pixel".to_owned(),
+        (density, "lattice") if subject.adaptive => format!("antialiasing {density} (adaptive)"),
+        (density, "lattice") => format!("antialiasing {density}"),
+        (density, sampling) => format!("antialiasing {density} by {sampling}"),
+    };
+    let interrupted = if *interrupted { "interrupted after " } else { "" };
+    format!(
+        "{}, {} x {} pixels, {rays}, {}, tiles of {}; {interrupted}{rounds} interleaved rounds, \
+         digest {}",
+        subject.scene,
+        subject.width,
+        subject.height,
+        subject.precision,
+        subject.tile,
+        short(reference_digest)
+    )
+}
+
+fn cells(record: &Record) -> [String; HEADER.len()] {
+    let row = &record.measurement;
+    let figure = |text: Option<String>| text.unwrap_or_else(|| NONE.to_owned());
+    let identical = match (&row.error, row.identical) {
+        (Some(_), _) => "failed",
+        (None, true) => "yes",
+        (None, false) => "NO",
+    };
+    let start = match &*row.starts_threads {
+        "pool" => row.prepare_ns.map(|ns| format!("before: {:.0} us", ns as f64 / 1e3)),
+        "per-render" => Some("in the time".to_owned()),
+        _ => None,
+    };
+    let rays = row.primary_rays.zip(row.redundant_rays);
+    [
+        record.label(),
+        row.threads.to_string(),
+        figure(row.median_ns.map(milliseconds)),
+        figure(row.cold_ns.map(milliseconds)),
+        figure(row.speedup.map(style::interval)),
+        figure(row.efficiency.map(|efficiency| format!("{:.0} %", efficiency * 100.0))),
+        figure(row.serial_fraction.map(|fraction| format!("{fraction:.3}"))),
+        figure(rays.map(|(primary, redundant)| rays_a_pixel(&record.subject, primary, redundant))),
+        figure(start),
+        identical.to_owned(),
+    ]
+}
+
+/// Returns a time in milliseconds with no more digits than a measurement supports.
+pub(super) fn milliseconds(ns: u64) -> String {
+    let ms = ns as f64 / 1e6;
+    let decimals = if ms < 10.0 {
+        3
+    } else if ms < 1000.0 {
+        1
+    } else {
+        0
+    };
+    format!("{ms:.decimals$}")
+}
+
+/// Returns the primary rays of a pixel, and the share by which they exceed the needed ones.
+pub(super) fn rays_a_pixel(subject: &Subject, primary: u64, redundant: u64) -> String {
+    let a_pixel = primary as f64 / (f64::from(subject.width) * f64::from(subject.height));
+    let percent = redundant as f64 / primary.saturating_sub(redundant).max(1) as f64 * 100.0;
+    let decimals = usize::from(percent < 100.0);
+    format!("{a_pixel:.1}/px +{percent:.decimals$} %")
+}
+
+/// Returns the settings of the execution, which change no bits.
+pub(super) fn computed(subject: &Subject) -> String {
+    let lanes = match subject.lanes {
+        1 => "rays one by one".to_owned(),
+        lanes => format!("{lanes} rays side by side"),
+    };
+    let samples = match (subject.antialiasing, &*subject.sampling) {
+        (0, _) | (_, "importance") => "no samples to share",
+        _ if subject.adaptive => "samples shared or interpolated",
+        _ if subject.share_samples => "samples shared",
+        _ => "samples not shared",
+    };
+    let accel = match (&*subject.formulas, &*subject.accel) {
+        ("textbook", "auto") => "none, as the textbook's formulas need it",
+        (_, accel) => accel,
+    };
+    format!("computed: {lanes}, {samples}, acceleration {accel}")
+}
+
+/// Returns what is wrong with a row, if anything.
+pub(crate) fn complaint(row: &Measurement) -> Option<String> {
+    let plural = if row.threads == 1 { "" } else { "s" };
+    let who = format!("{}, {} thread{plural}", row.strategy, row.threads);
+    let samples = row.samples_ns.len();
+    match (&row.error, row.digest) {
+        (Some(error), _) => Some(format!("{who}: failed after {samples} samples: {error}")),
+        (None, Some(digest)) if !row.identical => Some(format!(
+            "{who}: a wrong image, digest {}, after {samples} right ones",
+            digest.short()
+        )),
+        _ => None,
+    }
+}
+
+/// Returns the meaning of the columns.
+fn legend(records: &[Record]) -> [String; 4] {
+    let reference = reference(records);
+    [
+        "median: of second renderings, each in a process of its own; threads started \"before\" are not in it."
+            .to_owned(),
+        "cold: preparing and the first rendering of that process. All images are verified, untimed.".to_owned(),
+        format!(
+            "speed-up: time of {reference} over the row's, median over the rounds. Serial fraction: Karp and Flatt."
+        ),
+        "rays: primary ones, counted in the warm-up; +: more than the whole image as a single tile would need."
+            .to_owned(),
+    ]
+}
+
+/// Returns what the control says of the table.
+fn control_line(group: &[Record], control: Interval) -> String {
+    let reference = reference(group);
+    let far = (control.high - 1.0).max(1.0 - control.low);
+    let (wide, percent) = (far > TELLING, far * 100.0);
+    let verdict = match (control.contains(1.0), wide) {
+        (true, false) => "as it should be, 1 is in it.".to_owned(),
+        (true, true) => format!("1 is in it, but it reaches {percent:.0} % from there."),
+        (false, _) => "1 is not in it: measure again.\n\
+                       Chance alone keeps it out of at most one quiet run in twenty."
+            .to_owned(),
+    };
+    let note = if wide {
+        format!(
+            "\nBelieve no difference between rows below {percent:.0} %: measure longer (--time-limit, --precision-goal), \
+             or on a quieter machine."
+        )
+    } else if control.contains(1.0) {
+        "\nThat much is order and drift, of one thread; to tell rows apart compare their own intervals."
+            .to_owned()
+    } else {
+        String::new()
+    };
+    format!(
+        "control: {reference} over itself is {}; {verdict}{note}",
+        style::precise_interval(control)
+    )
+}
+
+/// Returns whether the rows are as precise as was asked for.
+fn goal_line(group: &[Record], goal: f64) -> String {
+    let speedups = group.iter().filter_map(|record| record.measurement.speedup);
+    match speedups.filter(|interval| interval.relative_half_width() > goal).count() {
+        0 => format!("goal: each speed-up is known to +-{:.3} % or better.", goal * 100.0),
+        missed => {
+            let why = if group[0].interrupted {
+                "it was interrupted"
+            } else {
+                "time was up. Give more, --time-limit SECONDS"
+            };
+            format!("goal: {missed} speed-ups are not known to +-{:.3} %: {why}.", goal * 100.0)
+        }
+    }
+}
+
+fn reference(group: &[Record]) -> &str {
+    group.first().map_or("the reference", |record| &record.measurement.strategy)
+}
+
+/// Returns the scene's file without its folder and ending.
+pub(super) fn scene_name(record: &Record) -> &str {
+    let file = scene_file(&record.subject.scene);
+    file.strip_suffix(".toml").unwrap_or(file)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::fixtures::results;
+    use super::*;
+
+    /// Catches a control that reassures however little it tells.
+    #[test]
+    fn a_control_says_what_is_to_be_believed() {
+        let results = results();
+        let told =
+            |median, low, high| control_line(&results.results, Interval { median, low, high });
+        assert_eq!(
+            told(1.0, 0.951, 1.049),
+            "control: sequential over itself is 1.000 [0.951, 1.049]; as it should be, 1 is in it.\n\
+             That much is order and drift, of one thread; to tell rows apart compare their own intervals."
+        );
+        assert_eq!(
+            told(0.97, 0.952, 0.98),
+            "control: sequential over itself is 0.970 [0.952, 0.980]; 1 is not in it: measure again.\n\
+             Chance alone keeps it out of at most one quiet run in twenty."
+        );
+        assert_eq!(
+            told(1.0, 0.939, 1.11),
+            "control: sequential over itself is 1.000 [0.939, 1.110]; 1 is in it, but it reaches 11 % from there.\n\
+             Believe no difference between rows below 11 %: measure longer (--time-limit, --precision-goal), or on a \
+             quieter machine."
+        );
+        assert_eq!(
+            told(0.8, 0.7, 0.91),
+            "control: sequential over itself is 0.800 [0.700, 0.910]; 1 is not in it: measure again.\n\
+             Chance alone keeps it out of at most one quiet run in twenty.\n\
+             Believe no difference between rows below 30 %: measure longer (--time-limit, --precision-goal), or on a \
+             quieter machine."
+        );
+    }
+}

@@ -1,0 +1,313 @@
+//! The forms of a made-up list, alone and beside itself without shared samples.
+
+use super::fixtures::{
+    around, digest, failed, machine, noise, record, records, results, row, subject,
+};
+use super::*;
+
+/// The list with its digests called by what their images are.
+fn without_digests(text: &str) -> String {
+    text.replace(&digest(1.0).short(), "RIGHT").replace(&digest(0.5).short(), "WRONG")
+}
+
+/// The made-up list with and without shared samples. Without them the reference takes three times
+/// as long, and the pool fails.
+fn both() -> Results {
+    let mut unshared = records();
+    unshared.truncate(3);
+    for Record { subject, measurement: row, .. } in &mut unshared {
+        subject.share_samples = false;
+        row.samples_ns.iter_mut().for_each(|ns| *ns *= 3);
+        (row.primary_rays, row.redundant_rays) = (Some(5_000_000), Some(0));
+    }
+    unshared[2].measurement = failed(unshared[2].measurement.clone(), "gone");
+    Results::new(machine(), noise(), [records(), unshared].concat())
+}
+
+const TABLE: &str = r#"room, 500 x 400 pixels, antialiasing 2, f32, tiles of 32; 2 interleaved rounds, digest RIGHT
+
+strategy              threads  median  cold           speed-up  efficiency    serial           rays  threads        identical
+                                   ms    ms    [95 % interval]              fraction                 start
+──────────────────────────────────────────────────────────────────────────────────────────────────────────────────────────────
+sequential                  1    2000  2500  1.00 [0.96, 1.06]       100 %         -  4.4/px +9.5 %  -              yes
+sequential (control)        1    2010  2512  1.00 [0.96, 1.06]       100 %         -  4.4/px +9.5 %  -              yes
+pool                        2    1026  1282  1.95 [1.91, 2.01]        97 %     0.026  4.4/px +9.5 %  before: 85 us  yes
+queue                       2       -     -                  -           -         -  4.4/px +9.5 %  in the time    NO
+many, "too" many         9000       -     -                  -           -         -              -  in the time    failed
+
+queue, 2 threads: a wrong image, digest WRONG, after 2 right ones
+many, "too" many, 9000 threads: failed after 0 samples: cannot start 9000 threads
+computed: 8 rays side by side, samples shared, acceleration auto
+control: sequential over itself is 0.995 [0.955, 1.055]; 1 is in it, but it reaches 6 % from there.
+Believe no difference between rows below 6 %: measure longer (--time-limit, --precision-goal), or on a quieter machine.
+"#;
+
+const UNSHARED: &str = r#"
+room, 500 x 400 pixels, antialiasing 2, f32, tiles of 32; 2 interleaved rounds, digest RIGHT
+
+strategy              threads  median  cold           speed-up  efficiency    serial            rays  threads  identical
+                                   ms    ms    [95 % interval]              fraction                  start
+─────────────────────────────────────────────────────────────────────────────────────────────────────────────────────────
+sequential                  1    2000  2500  1.00 [0.96, 1.06]       100 %         -  25.0/px +0.0 %  -        yes
+sequential (control)        1    2010  2512  1.00 [0.96, 1.06]       100 %         -  25.0/px +0.0 %  -        yes
+pool                        2       -     -                  -           -         -  25.0/px +0.0 %  -        failed
+
+pool, 2 threads: failed after 2 samples: gone
+computed: 8 rays side by side, samples not shared, acceleration auto
+control: sequential over itself is 0.995 [0.955, 1.055]; 1 is in it, but it reaches 6 % from there.
+Believe no difference between rows below 6 %: measure longer (--time-limit, --precision-goal), or on a quieter machine.
+"#;
+
+const LEGEND: &str = r#"
+median: of second renderings, each in a process of its own; threads started "before" are not in it.
+cold: preparing and the first rendering of that process. All images are verified, untimed.
+speed-up: time of sequential over the row's, median over the rounds. Serial fraction: Karp and Flatt.
+rays: primary ones, counted in the warm-up; +: more than the whole image as a single tile would need.
+"#;
+
+const SHARING: &str = "sharing: without it sequential takes 3.00 [3.00, 3.00] times as long; both tables are of the same rounds.\n";
+
+const MACHINE: &str = "noise: others had 1.0 % of the machine; 0.1 s of it other machines on the same host; 34 involuntary switches; 2400 to 3600 MHz.
+machine: A CPU, 8 logical cores, 2 available, quota 1.5 cores, linux x86_64
+program: rustc 1.0, release build, commit 0123456789ab";
+
+#[test]
+fn tables_as_a_whole() {
+    let expected = format!("{TABLE}{LEGEND}{MACHINE}");
+    assert_eq!(without_digests(&results().table()), expected);
+    let expected = format!("{TABLE}{UNSHARED}{LEGEND}{SHARING}{MACHINE}");
+    assert_eq!(without_digests(&both().table()), expected);
+}
+
+#[test]
+fn table_is_plain_text() {
+    let text = both().table();
+    assert!(text.chars().all(|c| c == '\n' || !c.is_control()), "{text:?}");
+    assert!(text.lines().all(|line| line == line.trim_end()), "{text}");
+}
+
+/// Catches a disturbance that only the figures show, and a goal that is said to be met.
+#[test]
+fn what_is_to_be_doubted_is_told() {
+    let disturbed =
+        Noise { share_of_others: Some(0.25), throttled: Some(3), disturbed: true, ..noise() };
+    let told = "noise: others had 25.0 % of the machine; 0.1 s of it other machines on the same host; stopped 3 times \
+                by the group's limit; 34 involuntary switches; 2400 to 3600 MHz.\nDISTURBED: measure again when the \
+                machine is quiet.";
+    assert_eq!(crate::noise::text(&disturbed), told);
+    assert_eq!(crate::noise::text(&Noise::default()), "noise: this system does not tell.");
+
+    let goal = |goal, interrupted| {
+        let mut results = results();
+        results.precision_goal = goal;
+        results.results.iter_mut().for_each(|record| record.interrupted = interrupted);
+        results.table()
+    };
+    assert!(!goal(None, false).contains("goal:"));
+    let met = "goal: each speed-up is known to +-6.000 % or better.";
+    assert!(goal(Some(0.06), false).contains(met));
+    // The half of 0.1 is 5 % of the reference's speed-up, a little more of its control's, and 2.6 %
+    // of the pool's.
+    let missed = "goal: 2 speed-ups are not known to +-4.000 %: ";
+    assert!(goal(Some(0.04), false).contains(&format!("{missed}time was up.")));
+    let text = goal(Some(0.04), true);
+    assert!(text.contains("; interrupted after 2 interleaved rounds, digest "), "{text}");
+    assert!(text.contains(&format!("{missed}it was interrupted.")), "{text}");
+}
+
+#[test]
+fn json_has_the_keys_that_stay() {
+    let value = json::value(&both());
+    let list = value["results"].as_array().expect("a list");
+    assert_eq!((&value["schema"], list.len()), (&2.into(), 8));
+    assert_eq!(
+        (&value["machine"]["quota_cores"], &value["noise"]["throttled"]),
+        (&1.5.into(), &0.into())
+    );
+    assert_eq!(
+        value["sharing_speedup"],
+        serde_json::json!({"median": 3.0, "low": 3.0, "high": 3.0})
+    );
+    let expected = r#"{
+        "scene": "room", "width": 500, "height": 400, "antialiasing": 2, "sampling": "lattice",
+        "adaptive": false, "formulas": "robust", "precision": "f32", "lanes": 8,
+        "share_samples": true, "accel": "auto", "tile": 32,
+        "rounds": 2, "interrupted": false, "disturbed": false,
+        "reference_digest": "DIGEST", "imbalance": null, "largest_tile": null,
+        "strategy": "pool", "threads": 2, "control": false, "granularity": "tile",
+        "scheduling": "dynamic", "output": "in-place", "starts_threads": "pool",
+        "identical": true, "digest": "DIGEST", "error": null,
+        "median_ns": 1025641026, "speedup": SPEEDUP, "efficiency": 0.97499999965875,
+        "serial_fraction": 0.0256, "prepare_ns": 84600,
+        "cold_ns": 1282051280, "cold_speedup": COLD, "cpu_ns": 1948717938,
+        "primary_rays": 876000, "redundant_rays": 76000,
+        "samples_ns": [1025641026, 1025641026], "prepare_samples_ns": [84600, 84600],
+        "cold_samples_ns": [1282051280, 1282051280],
+        "cpu_samples_ns": [1948717938, 1948717938]
+    }"#;
+    let expected = expected
+        .replace("DIGEST", &digest(1.0).to_string())
+        .replace("SPEEDUP", &json::text(&around(2e9 / 1_025_641_026.0)))
+        .replace("COLD", &json::text(&around(1.6e9 / 1_025_641_026.0)));
+    let expected: serde_json::Value = serde_json::from_str(&expected).expect("JSON");
+    assert_eq!(list[2], expected);
+    let (wrong, many) = (&list[3], &list[4]);
+    assert_eq!(
+        (&wrong["identical"], &wrong["digest"]),
+        (&false.into(), &digest(0.5).to_string().into())
+    );
+    assert!(wrong["median_ns"].is_null() && wrong["speedup"].is_null() && wrong["error"].is_null());
+    assert_eq!(
+        (&many["error"], &many["digest"]),
+        (&"cannot start 9000 threads".into(), &serde_json::Value::Null)
+    );
+    assert_eq!(many["samples_ns"], serde_json::json!([]));
+    assert_eq!((&list[1]["control"], &list[5]["share_samples"]), (&true.into(), &false.into()));
+}
+
+/// Catches a key that is written and not read back.
+#[test]
+fn what_is_written_is_read() {
+    let written = both();
+    let read = Results::parse(&written.json()).expect("a list");
+    assert_eq!((read.results, read.machine), (written.results, written.machine));
+    assert_eq!((read.noise, read.sharing_speedup), (written.noise, written.sharing_speedup));
+}
+
+/// Catches a list of the schema before of which a part is lost.
+#[test]
+fn the_schema_before_is_read() {
+    let then = r#"{
+        "schema": 1, "scene": "room", "width": 500, "height": 400, "antialiasing": 2,
+        "sampling": "lattice", "adaptive": false, "formulas": "robust", "precision": "f32",
+        "lanes": 8, "share_samples": true, "search": "auto", "tile": 32, "rounds": 2,
+        "interrupted": false, "seed": 1, "digest": "DIGEST", "machine": MACHINE,
+        "precision_goal": null, "noise": NOISE,
+        "results": [{
+            "strategy": "pool", "threads": 2, "control": false, "identical": true,
+            "digest": "DIGEST", "median_ns": 1025641026, "samples_ns": [1025641026, 1025641026],
+            "speedup": SPEEDUP, "efficiency": 0.975, "serial_fraction": 0.0256,
+            "threads_start": "prepare", "prepare_ns": 84600, "prepare_samples_ns": [84600, 84600],
+            "error": null, "primary_rays": 876000, "redundant_rays": 76000,
+            "one_shot": {"median_ns": 9, "samples_ns": [9, 9], "speedup": SPEEDUP},
+            "cpu_ns": null, "cpu_samples_ns": null
+        }]
+    }"#;
+    let speedup = Interval { median: 1.95, low: 1.91, high: 2.01 };
+    let then = then
+        .replace("DIGEST", &digest(1.0).to_string())
+        .replace("SPEEDUP", &json::text(&speedup))
+        .replace("MACHINE", &json::text(&machine()))
+        .replace("NOISE", &json::text(&noise()));
+    let pool = Measurement {
+        granularity: String::new(),
+        scheduling: String::new(),
+        output: String::new(),
+        speedup: Some(speedup),
+        efficiency: Some(0.975),
+        cold_ns: Some(9),
+        cold_samples_ns: vec![9; 2],
+        cold_speedup: Some(speedup),
+        cpu_ns: None,
+        cpu_samples_ns: Vec::new(),
+        ..row("pool", 2, "pool", 1_025_641_026)
+    };
+    let read = Results::parse(&then).expect("a list");
+    assert_eq!((read.results, read.seed, read.noise), (vec![record(pool)], 1, noise()));
+
+    let unshared = then.replace("\"share_samples\": true", "\"share_samples\": false");
+    let shared = then.trim_end().trim_end_matches('}');
+    let sharing = |list: &Results| {
+        list.results.iter().map(|record| record.subject.share_samples).collect::<Vec<_>>()
+    };
+    let both = format!("{shared}, \"unshared\": {unshared}}}");
+    assert_eq!(sharing(&Results::parse(&both).expect("a list")), [true, false]);
+    let scenes =
+        format!(r#"{{"schema": 1, "comparisons": [{unshared}, {then}], "not_measured": ["x"]}}"#);
+    let scenes = Results::parse(&scenes).expect("a list");
+    assert_eq!((sharing(&scenes), scenes.not_measured), (vec![false, true], vec!["x".to_owned()]));
+}
+
+#[test]
+fn csv_has_a_line_for_each_record() {
+    let text = both().csv();
+    let mut reader = ::csv::Reader::from_reader(text.as_bytes());
+    let headers = reader.headers().expect("headers").clone();
+    let column = |name| headers.iter().position(|header| header == name).expect(name);
+    let records: Vec<::csv::StringRecord> =
+        reader.records().map(|r| r.expect("a record")).collect();
+    assert_eq!(records.len(), 8);
+    for (line, name, cell) in [
+        (2, "median_ns", "1025641026"),
+        (2, "serial_fraction", "0.0256"),
+        (1, "control", "true"),
+        (3, "identical", "false"),
+        (4, "strategy", "many, \"too\" many"),
+        (4, "speedup", ""),
+        (4, "speedup_low", ""),
+        (4, "commit", "0123456789ab"),
+        (2, "accel", "auto"),
+        (2, "samples", "2"),
+        (2, "primary_rays", "876000"),
+        (4, "primary_rays", ""),
+        (5, "share_samples", "false"),
+    ] {
+        assert_eq!(&records[line][column(name)], cell, "{name} of line {line}");
+    }
+    assert_eq!(headers.iter().filter(|name| name.ends_with("samples_ns")).count(), 0);
+}
+
+#[test]
+fn markdown_has_a_table_for_each_subject() {
+    let text = without_digests(&both().markdown());
+    assert_eq!(
+        text.matches("| sequential | 1 | 2000 | 1.00 [0.96, 1.06] | 100 % | 2500 |").count(),
+        2,
+        "{text}"
+    );
+    assert!(text.contains("\n| pool | 2 | failed | | | |\n"), "{text}");
+    assert!(text.contains("\n| queue | 2 | wrong image | | | |\n"), "{text}");
+}
+
+#[test]
+fn without_a_reference_nothing_is_gained() {
+    let mut list = both().results;
+    list[5].measurement = failed(list[5].measurement.clone(), "gone");
+    assert_eq!(Results::new(machine(), noise(), list).sharing_speedup, None);
+    // Another image size is another subject, not the same without shared samples.
+    let mut list = both().results;
+    list[5..].iter_mut().for_each(|record| record.subject.width = 7);
+    assert_eq!(Results::new(machine(), noise(), list).sharing_speedup, None);
+}
+
+#[test]
+fn rays_of_a_pixel_and_their_excess() {
+    let cell = |primary, redundant| table::rays_a_pixel(&subject(), primary, redundant);
+    assert_eq!(cell(876_000, 76_000), "4.4/px +9.5 %");
+    assert_eq!(cell(5_000_000, 4_190_000), "25.0/px +517 %");
+    assert_eq!(cell(5_000_000, 0), "25.0/px +0.0 %");
+    assert_eq!(cell(0, 0), "0.0/px +0.0 %");
+}
+
+#[test]
+fn execution_in_words() {
+    let of = |change: &dyn Fn(&mut Subject)| {
+        let mut subject = subject();
+        change(&mut subject);
+        table::computed(&subject)
+    };
+    assert_eq!(of(&|_| ()), "computed: 8 rays side by side, samples shared, acceleration auto");
+    assert_eq!(
+        of(&|s| (s.lanes, s.share_samples, s.accel) = (1, false, "none".to_owned())),
+        "computed: rays one by one, samples not shared, acceleration none"
+    );
+    let nothing = "computed: 8 rays side by side, no samples to share, acceleration auto";
+    assert_eq!(of(&|s| s.antialiasing = 0), nothing);
+    let adaptive =
+        "computed: 8 rays side by side, samples shared or interpolated, acceleration auto";
+    assert_eq!(of(&|s| (s.adaptive, s.share_samples) = (true, false)), adaptive);
+    assert_eq!(of(&|s| (s.adaptive, s.antialiasing) = (true, 0)), nothing);
+    assert_eq!(of(&|s| s.sampling = "importance".to_owned()), nothing);
+    let textbook = of(&|s| s.formulas = "textbook".to_owned());
+    assert!(textbook.ends_with("acceleration none, as the textbook's formulas need it"));
+}

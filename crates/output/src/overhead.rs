@@ -1,0 +1,258 @@
+//! What strategies cost beside their work, for people and for other programs.
+
+use crate::json;
+use crate::machine;
+use crate::{noise, style};
+use rayweave_contract::Granularity;
+use rayweave_measure::overhead::{Figures, LARGEST_SIDE, PIXEL_NS, Row, Study, TASKS, TILE};
+use rayweave_measure::{Interval, Machine, Noise};
+use serde::Serialize;
+
+/// It changes when a key changes its meaning or goes.
+const SCHEMA: u32 = 1;
+
+const HEADER: [&str; 10] = [
+    "strategy",
+    "threads",
+    "piece",
+    "dispatch, ns a piece\non 1 thread",
+    "dispatch, ns a piece\non all threads",
+    "METG(50 %)\nus",
+    "break-even\npixels",
+    "prepare\nus",
+    "first\nus",
+    "later\nus",
+];
+
+/// The columns of numbers, which line up at their right.
+const NUMBERS: std::ops::RangeInclusive<usize> = 3..=9;
+
+const NONE: &str = "-";
+
+/// A study with everything that is needed to read it.
+#[derive(Clone, Copy, Debug)]
+pub struct Report<'a> {
+    /// What was measured.
+    pub study: &'a Study,
+    /// What it was measured on.
+    pub machine: &'a Machine,
+    /// What else went on there.
+    pub noise: &'a Noise,
+}
+
+impl Report<'_> {
+    /// For people, without a newline at the end.
+    #[must_use]
+    pub fn table(&self) -> String {
+        let Study { rows, step_ns, rounds } = self.study;
+        let complaints = rows.iter().filter_map(|row| row.figures.as_ref().err());
+        let mut lines = vec![
+            format!("synthetic work, {rounds} interleaved rounds, every picture verified"),
+            String::new(),
+            style::table(HEADER, rows.iter().map(cells), NUMBERS),
+            String::new(),
+        ];
+        lines.extend(complaints.map(ToString::to_string));
+        lines.push(format!(
+            "dispatch: a rendering's time for each more piece of next to no work [95 % interval].\n\
+             METG(50 %): the shortest piece, by its work, that leaves half of the best efficiency; {TASKS} pieces, \
+             bands: one a thread.\n\
+             break-even: the side of the smallest square, of {PIXEL_NS} ns a pixel, from which on it is faster than \
+             the reference\n\
+             (tiles of {TILE}; tried up to {LARGEST_SIDE}).\n\
+             first, later: the first and the third rendering of a small picture after preparing.\n\
+             a step of the work takes {step_ns:.2} ns."
+        ));
+        lines.push(noise::text(self.noise));
+        lines.push(machine::text(self.machine));
+        lines.join("\n")
+    }
+
+    /// For programs: an object of schema 1, a result a strategy. Times are in nanoseconds; what
+    /// could not be measured is null, and `error` says why.
+    #[must_use]
+    pub fn json(&self) -> String {
+        let Study { rows, step_ns, rounds } = self.study;
+        json::text(&Object {
+            schema: SCHEMA,
+            rounds: *rounds,
+            step_ns: *step_ns,
+            tasks: TASKS,
+            break_even_pixel_ns: PIXEL_NS,
+            break_even_largest_side: LARGEST_SIDE,
+            noise: self.noise,
+            machine: self.machine,
+            results: rows.iter().map(Item::new).collect(),
+        })
+    }
+}
+
+fn cells(row: &Row) -> [String; HEADER.len()] {
+    let piece = piece(row.granularity).to_owned();
+    let [one, all, metg, side, prepare, first, later] = match &row.figures {
+        Err(_) => std::array::from_fn(|_| NONE.to_owned()),
+        Ok(figures) => [
+            dispatch(figures.dispatch_one),
+            dispatch(figures.dispatch_all),
+            figures.metg.map_or_else(|| "< 1 step".to_owned(), |ns| style::significant(ns / 1e3)),
+            figures
+                .break_even
+                .map_or_else(|| NONE.to_owned(), |side| format!("{0:.0} x {0:.0}", side.ceil())),
+            style::significant(figures.prepare.median / 1e3),
+            style::significant(figures.first.median / 1e3),
+            style::significant(figures.later.median / 1e3),
+        ],
+    };
+    [
+        row.strategy.to_owned(),
+        row.threads.to_string(),
+        piece,
+        one,
+        all,
+        metg,
+        side,
+        prepare,
+        first,
+        later,
+    ]
+}
+
+fn dispatch(interval: Option<Interval>) -> String {
+    interval.map_or_else(
+        || NONE.to_owned(),
+        |Interval { median, low, high }| format!("{median:.1} [{low:.1}, {high:.1}]"),
+    )
+}
+
+/// The word for what is computed at once.
+fn piece(granularity: Granularity) -> &'static str {
+    match granularity {
+        Granularity::Pixel => "pixel",
+        Granularity::Row => "row",
+        Granularity::Tile => "tile",
+        Granularity::Band => "band",
+    }
+}
+
+#[derive(Serialize)]
+struct Object<'a> {
+    schema: u32,
+    rounds: usize,
+    step_ns: f64,
+    tasks: u32,
+    break_even_pixel_ns: f64,
+    break_even_largest_side: u32,
+    noise: &'a Noise,
+    machine: &'a Machine,
+    results: Vec<Item<'a>>,
+}
+
+#[derive(Serialize)]
+struct Item<'a> {
+    strategy: &'a str,
+    threads: usize,
+    piece: &'static str,
+    dispatch_one_ns: Option<Interval>,
+    dispatch_all_ns: Option<Interval>,
+    metg_ns: Option<f64>,
+    break_even_side: Option<f64>,
+    prepare_ns: Option<Interval>,
+    first_ns: Option<Interval>,
+    later_ns: Option<Interval>,
+    error: Option<String>,
+}
+
+impl<'a> Item<'a> {
+    fn new(row: &'a Row) -> Self {
+        let figures = row.figures.as_ref();
+        let interval = |of: fn(&Figures) -> Interval| figures.ok().map(of);
+        Self {
+            strategy: row.strategy,
+            threads: row.threads,
+            piece: piece(row.granularity),
+            dispatch_one_ns: figures.ok().and_then(|figures| figures.dispatch_one),
+            dispatch_all_ns: figures.ok().and_then(|figures| figures.dispatch_all),
+            metg_ns: figures.ok().and_then(|figures| figures.metg),
+            break_even_side: figures.ok().and_then(|figures| figures.break_even),
+            prepare_ns: interval(|figures| figures.prepare),
+            first_ns: interval(|figures| figures.first),
+            later_ns: interval(|figures| figures.later),
+            error: figures.err().map(ToString::to_string),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compare::fixtures::noise;
+    use rayweave_measure::overhead::Failure;
+
+    fn study() -> Study {
+        let interval = |median| Interval { median, low: median - 1.0, high: median + 1.0 };
+        let figures = Figures {
+            dispatch_one: Some(interval(5.0)),
+            dispatch_all: Some(interval(80.0)),
+            metg: Some(234.0),
+            break_even: Some(40.2),
+            prepare: interval(90_000.0),
+            first: interval(120_500.0),
+            later: interval(8_000.0),
+        };
+        let row =
+            |strategy, piece, figures| Row { strategy, granularity: piece, threads: 2, figures };
+        let bands = Figures {
+            dispatch_one: None,
+            dispatch_all: None,
+            metg: None,
+            break_even: None,
+            ..figures
+        };
+        let rows = vec![
+            row("rows", Granularity::Row, Ok(figures)),
+            row("bands", Granularity::Band, Ok(bands)),
+            row(
+                "none",
+                Granularity::Tile,
+                Err(Failure::Preparing("none: unavailable here".to_owned())),
+            ),
+        ];
+        Study { rows, step_ns: 2.0, rounds: 7 }
+    }
+
+    #[test]
+    fn the_table_has_figures_and_complaints() {
+        let (study, machine) = (study(), Machine::here());
+        let table = Report { study: &study, machine: &machine, noise: &noise() }.table();
+        let line = |name: &str| {
+            let line = table
+                .lines()
+                .find(|line| line.starts_with(name))
+                .unwrap_or_else(|| panic!("{table}"));
+            line.split_whitespace().collect::<Vec<_>>().join(" ")
+        };
+        assert_eq!(
+            line("rows "),
+            "rows 2 row 5.0 [4.0, 6.0] 80.0 [79.0, 81.0] 0.234 41 x 41 90.0 120 8.00"
+        );
+        assert_eq!(line("bands "), "bands 2 band - - < 1 step - 90.0 120 8.00");
+        assert_eq!(line("none "), "none 2 tile - - - - - - -");
+        assert!(table.contains("\nnone: unavailable here\n"), "{table}");
+    }
+
+    #[test]
+    fn json_keeps_nanoseconds_and_says_why_there_are_none() {
+        let (study, machine) = (study(), Machine::here());
+        let text = Report { study: &study, machine: &machine, noise: &noise() }.json();
+        let value: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+        let [rows, bands, none] = [0, 1, 2].map(|index| &value["results"][index]);
+        assert!(value["noise"]["disturbed"].is_boolean(), "{text}");
+        assert_eq!(
+            (&rows["metg_ns"], &rows["dispatch_all_ns"]["high"]),
+            (&234.0.into(), &81.0.into())
+        );
+        assert!(bands["dispatch_one_ns"].is_null() && bands["error"].is_null());
+        assert!(none["prepare_ns"].is_null());
+        assert_eq!(none["error"], "none: unavailable here");
+    }
+}
