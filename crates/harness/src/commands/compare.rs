@@ -170,13 +170,13 @@ impl Files {
     }
 
     fn finish(self, results: &Results) -> Result<(), String> {
-        let views: [(_, fn(&Results) -> String); 3] = [
-            (self.json, Results::json),
-            (self.csv, Results::csv),
-            (self.markdown, Results::markdown),
+        let views = [
+            (self.json, results.json()),
+            (self.csv, results.csv()),
+            (self.markdown, results.markdown()),
         ];
         let mut wanted = views.into_iter().filter_map(|(file, view)| Some((file?, view)));
-        wanted.try_for_each(|(file, view)| file.finish(view(results).as_bytes()))
+        wanted.try_for_each(|(file, view)| file.finish(view.as_bytes()))
     }
 }
 
