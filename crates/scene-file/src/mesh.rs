@@ -1,13 +1,13 @@
-//! A `[[mesh]]`: which file it names, and what becomes of the triangles in it.
+//! A `[[mesh]]`: the file that it names, and the triangles in that file.
 
 use std::path::{Component, Path, PathBuf};
 
 use glam::DVec3;
-use rayweave_core::scene::Triangle;
+use rayweave_core::scene::{Fault, Triangle};
 
-use crate::error::{Problem, Refusal, SceneFileError};
-use crate::fields::Field;
-use crate::{load, obj};
+use crate::error::{Result, Source};
+use crate::node::Mention;
+use crate::{obj, read_file};
 
 /// The most triangles that the meshes of a scene may have together: 8,388,608. A face of a few
 /// bytes can stand for any number of them, so the size of the files alone is no limit.
@@ -15,67 +15,62 @@ pub const MAX_MESH_TRIANGLES: usize = 8 << 20;
 
 /// A mesh whose file is yet to be read.
 pub(crate) struct Mesh {
-    path: PathBuf,
-    material: usize,
-    /// What to say if there is no triangle in the file.
-    empty: Problem,
+    pub(crate) path: PathBuf,
+    pub(crate) material: usize,
+    /// The path in the scene file, at fault if there is no triangle in the file.
+    pub(crate) mention: Mention,
 }
 
-/// The triangles of a scene.
-pub(crate) struct Triangles {
-    /// Those with an area.
-    pub(crate) kept: Vec<Triangle>,
-    /// How many of the meshes' had none.
+/// The triangles of a scene and of its meshes.
+pub(crate) struct MeshTriangles {
+    /// The triangles that have an area.
+    pub(crate) all: Vec<Triangle>,
+    /// The number of the meshes' triangles that have none.
     pub(crate) skipped: usize,
-    /// How many more meshes may have.
+    /// The number of triangles that meshes may still have.
     left: usize,
 }
 
 impl Mesh {
-    /// The mesh whose path is the value of `field`.
+    /// Checks that the path leads down.
     ///
-    /// The rule is about the words of the path: it leads down. A link in the folder is followed
-    /// wherever it leads, because whoever put it there could have put the file there.
-    pub(crate) fn new(field: &Field, material: usize) -> Result<Self, Problem> {
-        let path = PathBuf::from(field.string()?);
+    /// The rule is about the words of the path. A link in the folder is followed wherever it leads,
+    /// because whoever put it there could have put the file there.
+    pub(crate) fn check(&self) -> Result<(), Fault> {
         let down = |part| matches!(part, Component::Normal(_) | Component::CurDir);
-        if path.as_os_str().is_empty() || !path.components().all(down) {
-            return Err(field.expected("a path in the folder of the scene file, without `..`"));
+        if !self.path.as_os_str().is_empty() && self.path.components().all(down) {
+            return Ok(());
         }
-        let empty = format!(
-            "expected an OBJ file with a triangle that has an area, found {}",
-            field.written()
-        );
-        Ok(Self { path, material, empty: field.problem(empty) })
+        let expected = "a path in the folder of the scene file, without `..`";
+        Err(Fault { key: "path", expected, found: self.path.display().to_string() })
     }
 
-    /// Appends the mesh to `triangles`; its file is looked for in `folder`.
+    /// Appends the mesh to `triangles`. Its file is in the `folder` of `scene`.
     pub(crate) fn read(
         self,
+        scene: Source,
         folder: Option<&Path>,
-        triangles: &mut Triangles,
-    ) -> Result<(), Refusal> {
+        triangles: &mut MeshTriangles,
+    ) -> Result<()> {
+        let expected = "expected an OBJ file with a triangle that has an area";
+        let empty = format!("{expected}, found {}", self.mention.written);
         let Some(folder) = folder else {
-            return Err(self
-                .empty
-                .adding("a scene that is not read from a file has no meshes")
-                .into());
+            let hint = "a scene that is not read from a file has no meshes";
+            return Err(self.mention.error(scene, &format!("{empty}; {hint}")));
         };
         let file = folder.join(&self.path);
         let name = file.display().to_string();
-        let bytes =
-            load::bytes_of(&file).map_err(|message| SceneFileError::of_file(&name, message))?;
-        let before = triangles.kept.len();
-        obj::read(&bytes, |vertices| triangles.add(vertices, self.material))
-            .map_err(|fault| fault.within(&bytes, &name))?;
-        if triangles.kept.len() == before { Err(self.empty.into()) } else { Ok(()) }
+        let bytes = read_file::bytes_of(&file, &name)?;
+        let before = triangles.all.len();
+        obj::read(&bytes, &name, |vertices| triangles.add(vertices, self.material))?;
+        if triangles.all.len() == before { Err(self.mention.error(scene, &empty)) } else { Ok(()) }
     }
 }
 
-impl Triangles {
-    /// The scene's own triangles, which come before those of meshes.
+impl MeshTriangles {
+    /// Begins with the scene's own triangles, which come before those of meshes.
     pub(crate) fn after(own: Vec<Triangle>) -> Self {
-        Self { kept: own, skipped: 0, left: MAX_MESH_TRIANGLES }
+        Self { all: own, skipped: 0, left: MAX_MESH_TRIANGLES }
     }
 
     fn add(&mut self, vertices: [DVec3; 3], material: usize) -> Result<(), String> {
@@ -88,7 +83,7 @@ impl Triangles {
         let triangle = Triangle { vertices, material };
         // The vertices are finite: all that can be wrong is the area.
         match triangle.check() {
-            Ok(()) => self.kept.push(triangle),
+            Ok(()) => self.all.push(triangle),
             Err(_) => self.skipped += 1,
         }
         Ok(())

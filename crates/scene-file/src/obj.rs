@@ -1,37 +1,24 @@
 //! The part of Wavefront OBJ that a mesh is made of: vertices and faces.
 //!
 //! Read by hand, because no library keeps to what a scene file promises. `tobj` and `obj-rs` do not
-//! say in which line a fault is, and the first takes vertices from below a face; `obj` computes in
-//! `f32` and takes any index and number of corners; `wavefront_obj` refuses lines of a kind that it
+//! say in which line a fault is, and `tobj` takes vertices from below a face. `obj` computes in
+//! `f32` and takes any index and number of corners. `wavefront_obj` refuses lines of a kind that it
 //! does not know.
 
 use std::str::FromStr;
 
 use glam::DVec3;
 
-use crate::error::{Problem, SceneFileError};
-use crate::phrase;
+use crate::error::{Result, Source};
+use crate::wording;
 
-/// What is wrong with an OBJ file, and at which byte.
-pub(crate) struct Fault {
-    offset: usize,
-    message: String,
-}
-
-impl Fault {
-    /// The error to report about the file of these bytes and this name.
-    pub(crate) fn within(self, bytes: &[u8], name: &str) -> SceneFileError {
-        // Comments and names may be in any encoding. Only the text before the fault is needed.
-        let before = String::from_utf8_lossy(&bytes[..self.offset]);
-        Problem::at(before.len(), self.message).within(&before, name)
-    }
-}
-
-/// Hands every triangle of the file to `add`: face by face, each a fan around its first corner.
+/// Passes every triangle of the file to `add`: face by face, each a fan around its first corner.
+/// `name` is what errors call the file.
 pub(crate) fn read(
     bytes: &[u8],
+    name: &str,
     mut add: impl FnMut([DVec3; 3]) -> Result<(), String>,
-) -> Result<(), Fault> {
+) -> Result<()> {
     let mut vertices = Vec::new();
     // A byte order mark would hide the keyword of the first line.
     let text = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes);
@@ -44,7 +31,9 @@ pub(crate) fn read(
         };
         read.map_err(|(place, message)| {
             let offset = place.first().and_then(|byte| bytes.element_offset(byte));
-            Fault { offset: offset.unwrap_or_default(), message }
+            // Comments and names may be in any encoding. Only the text before the fault is needed.
+            let text = &String::from_utf8_lossy(&bytes[..offset.unwrap_or_default()]);
+            Source { name, text }.error(text.len(), None, &message)
         })?;
     }
     Ok(())
@@ -53,20 +42,20 @@ pub(crate) fn read(
 /// A fault and the part of the line that it is in.
 type Located<'a> = (&'a [u8], String);
 
-/// The vertex of a line `v x y z`. Whatever comes after is no matter.
+/// Reads a line `v x y z`. Whatever comes after is ignored.
 fn vertex(line: &[u8]) -> Result<DVec3, Located<'_>> {
     let mut numbers = words(line).skip(1);
     let mut number = || {
         let Some(word) = numbers.next() else {
-            return Err((line, format!("expected `v` and three numbers, found {}", shown(line))));
+            return Err(mismatch(line, "`v` and three numbers"));
         };
         let number = parsed(word).filter(|number: &f64| number.is_finite());
-        number.ok_or_else(|| (word, format!("expected a finite number, found {}", shown(word))))
+        number.ok_or_else(|| mismatch(word, "a finite number"))
     };
     Ok(DVec3::new(number()?, number()?, number()?))
 }
 
-/// Hands the triangles of a line `f p1 p2 p3 ...` to `add`.
+/// Passes the triangles of a line `f p1 p2 p3 ...` to `add`.
 fn face<'a>(
     line: &'a [u8],
     vertices: &[DVec3],
@@ -75,10 +64,7 @@ fn face<'a>(
     let mut corners = words(line).skip(1).map(|word| corner(word, vertices));
     let (Some(first), Some(second), Some(third)) = (corners.next(), corners.next(), corners.next())
     else {
-        return Err((
-            line,
-            format!("expected `f` and three corners or more, found {}", shown(line)),
-        ));
+        return Err(mismatch(line, "`f` and three corners or more"));
     };
     let (first, mut last) = (first?, second?);
     for next in std::iter::once(third).chain(corners) {
@@ -89,8 +75,8 @@ fn face<'a>(
     Ok(())
 }
 
-/// The vertex that a corner names, by its number or by how far above the line it is. Texture and
-/// normal, behind a slash, are no matter.
+/// Returns the vertex that a corner names, by its number or by how far above the line it is.
+/// Texture and normal, behind a slash, are ignored.
 fn corner<'a>(word: &'a [u8], vertices: &[DVec3]) -> Result<DVec3, Located<'a>> {
     let number = word.split(|&byte| byte == b'/').next().and_then(parsed::<i64>);
     let index = number.and_then(|number| {
@@ -99,13 +85,7 @@ fn corner<'a>(word: &'a [u8], vertices: &[DVec3]) -> Result<DVec3, Located<'a>> 
     });
     index.and_then(|index| vertices.get(index)).copied().ok_or_else(|| {
         let count = vertices.len();
-        (
-            word,
-            format!(
-                "expected the number of one of the {count} vertices above, found {}",
-                shown(word)
-            ),
-        )
+        mismatch(word, &format!("the number of one of the {count} vertices above"))
     })
 }
 
@@ -117,6 +97,7 @@ fn parsed<T: FromStr>(word: &[u8]) -> Option<T> {
     str::from_utf8(word).ok()?.parse().ok()
 }
 
-fn shown(part: &[u8]) -> String {
-    format!("`{}`", phrase::shortened(&String::from_utf8_lossy(part)))
+fn mismatch<'a>(found: &'a [u8], expected: &str) -> Located<'a> {
+    let written = wording::shortened(&String::from_utf8_lossy(found));
+    (found, format!("expected {expected}, found `{written}`"))
 }
