@@ -1,9 +1,11 @@
-//! Input that is made to hurt: deep, large, no file at all, or random. It is refused in one line.
+//! Hostile input: deep, large, not a file, or random. It is refused in one line.
 
 use std::fs::{self, File};
 use std::path::Path;
 
+use proptest::collection;
 use proptest::prelude::*;
+use proptest::sample::{self, Index};
 use rayweave_scene_file::{MAX_BYTES, Position, REPORT_SCENE, SceneFileError, load, parse};
 
 fn refusal(bytes: impl AsRef<[u8]>) -> SceneFileError {
@@ -27,20 +29,21 @@ fn an_error_has_all_its_pieces() {
     let text = REPORT_SCENE.replace("radius = 0.3\n", "radius = -1\n");
     let error = parse(text.as_bytes(), "scenes/room.toml").expect_err("a negative radius");
     let line = text.lines().position(|line| line == "radius = -1").expect("the line is there") + 1;
-    assert_eq!(error.file, "scenes/room.toml");
-    assert_eq!(error.position, Some(Position { line, column: 10 }));
-    assert_eq!(error.key.as_deref(), Some("sphere[2].radius"));
-    assert_eq!(error.message, "expected a finite number above 0, found -1");
-    let shown = format!(
-        "scenes/room.toml:{line}:10: sphere[2].radius: expected a finite number above 0, found -1"
-    );
+    let message = "expected a finite number above 0, found -1";
+    let expected = SceneFileError {
+        file: "scenes/room.toml".into(),
+        position: Some(Position { line, column: 10 }),
+        key: Some("sphere[2].radius".into()),
+        message: message.into(),
+    };
+    assert_eq!(error, expected);
+    let shown = format!("scenes/room.toml:{line}:10: sphere[2].radius: {message}");
     assert_eq!(error.to_string(), shown);
 }
 
 #[test]
-fn depth_is_no_way_to_the_end_of_the_stack() {
-    const DEPTH: usize = 100_000;
-    let deep = |text: &str| text.repeat(DEPTH);
+fn deep_nesting_does_not_overflow_the_stack() {
+    let deep = |text: &str| text.repeat(100_000);
     let limit = "not valid TOML: cannot recurse further; max recursion depth met, found ";
     for (text, message) in [
         (format!("a = {}", deep("[")), limit),
@@ -58,20 +61,17 @@ fn depth_is_no_way_to_the_end_of_the_stack() {
         assert!(error.message.starts_with(message), "{error}");
     }
     // As deep as TOML is read: still a value of the wrong type like any other.
-    let error = refusal(format!("sphere = {}{}\n[camera]", "[".repeat(80), "]".repeat(80)));
+    let deepest = format!("{}{}\n", "[".repeat(80), "]".repeat(80));
+    let error = refusal(format!("sphere = {deepest}[camera]"));
     assert_eq!(error.key.as_deref(), Some("camera.position"));
-    let error =
-        refusal(REPORT_SCENE.replace("0.9\n", &format!("{}{}\n", "[".repeat(80), "]".repeat(80))));
+    let error = refusal(REPORT_SCENE.replace("0.9\n", &deepest));
     assert_eq!(error.key.as_deref(), Some("sphere[0].radius"));
 }
 
 #[test]
-fn length_is_no_way_to_a_long_message() {
+fn long_input_does_not_make_a_long_message() {
     const LENGTH: usize = 1_000_000;
-    for piece in [
-        "[", "]", "{", "\"", "'", "\"\"\"", "a", "a.", "a=1\n", "[a]\n", "[[a]]\n", "#", "\\", "-",
-        "é",
-    ] {
+    for piece in "[ ] { \" ' \"\"\" a a. a=1\n [a]\n [[a]]\n # \\ - é".split(' ') {
         refusal(piece.repeat(LENGTH / piece.len()));
         refusal(format!("a = {}", piece.repeat(LENGTH / piece.len())));
         refusal(format!("a = \"{}", piece.repeat(LENGTH / piece.len())));
@@ -84,10 +84,9 @@ fn length_is_no_way_to_a_long_message() {
     assert_eq!(material.key.as_deref(), Some("sphere[0].material"));
     let key = refusal(REPORT_SCENE.replace("look_at", &long));
     assert_eq!(key.position.map(|position| position.column), Some(1));
-    let digits = refusal(
-        REPORT_SCENE.replace("antialiasing = 2", &format!("antialiasing = {}", "9".repeat(LENGTH))),
-    );
-    assert!(digits.message.starts_with("expected an integer in 0..=32, found 999"), "{digits}");
+    let digits = format!("antialiasing = {}", "9".repeat(LENGTH));
+    let integer = refusal(REPORT_SCENE.replace("antialiasing = 2", &digits));
+    assert!(integer.message.starts_with("expected an integer in 0..=32, found 999"), "{integer}");
     refusal(REPORT_SCENE.replace("material.red", &format!("material.{long}")));
 }
 
@@ -117,7 +116,7 @@ fn unloadable(path: &Path) -> String {
 }
 
 #[test]
-fn what_is_no_file_of_a_sane_size_is_not_read() {
+fn only_regular_files_of_limited_size_are_read() {
     let folder = tempfile::tempdir().expect("a folder");
     assert_eq!(unloadable(folder.path()), "expected a file, found a folder");
     let missing = unloadable(&folder.path().join("missing.toml"));
@@ -153,56 +152,23 @@ fn devices_pipes_and_sockets_are_not_waited_for() {
     assert!(unloadable(&itself).starts_with("cannot be read: "));
 }
 
-/// What a mutation puts into the file: bytes, or pieces that bring it near to sense.
+/// Generates what a mutation inserts: bytes, or pieces that bring the text near to sense.
 fn piece() -> impl Strategy<Value = Vec<u8>> {
-    let words = [
-        "",
-        "\n",
-        "=",
-        "[",
-        "]",
-        "[[",
-        "]]",
-        "{",
-        "}",
-        "\"",
-        "'",
-        "\"\"\"",
-        "#",
-        ",",
-        ".",
-        "\\",
-        "\\u",
-        "-",
-        "inf",
-        "nan",
-        "1e999",
-        "0x",
-        "99999999999999999999",
-        "true",
-        "1979-05-27",
-        "[sphere]",
-        "[[camera]]",
-        "[[sphere]]\n",
-        "\r",
-        "\u{feff}",
-        "radius = 0\n",
-        "material = 1\n",
-        "a.b.c = 1\n",
-        "[material.x]\n",
-        "\u{202e}",
-        "é",
-    ];
+    let words: Vec<&str> = "|\n|=|[|]|[[|]]|{|}|\"|'|\"\"\"|#|,|.|\\|\\u|-|inf|nan|1e999|0x|\
+        99999999999999999999|true|1979-05-27|[sphere]|[[camera]]|[[sphere]]\n|\r|\u{feff}|\
+        radius = 0\n|material = 1\n|a.b.c = 1\n|[material.x]\n|\u{202e}|é"
+        .split('|')
+        .collect();
     prop_oneof![
-        proptest::collection::vec(any::<u8>(), 0..4),
-        proptest::sample::select(words.to_vec()).prop_map(|word| word.as_bytes().to_vec()),
+        collection::vec(any::<u8>(), 0..4),
+        sample::select(words).prop_map(|word| word.as_bytes().to_vec()),
     ]
 }
 
 proptest! {
     #[test]
     fn a_mutated_scene_is_a_scene_or_refused_in_one_line(
-        mutations in proptest::collection::vec((any::<prop::sample::Index>(), 0..6_usize, piece()), 1..8)
+        mutations in collection::vec((any::<Index>(), 0..6_usize, piece()), 1..8)
     ) {
         let mut text = REPORT_SCENE.as_bytes().to_vec();
         for (at, removed, inserted) in mutations {
@@ -214,10 +180,10 @@ proptest! {
             Ok(file) => prop_assert_eq!(file.scene.check(), Ok(())),
             Err(error) => {
                 assert_readable(&error);
-                if let Some(position) = error.position {
-                    let lines = text.split(|&byte| byte == b'\n').collect::<Vec<_>>();
-                    prop_assert!((1..=lines.len()).contains(&position.line), "{}", error);
-                    prop_assert!((1..=lines[position.line - 1].len() + 1).contains(&position.column), "{}", error);
+                if let Some(Position { line, column }) = error.position {
+                    let lines: Vec<&[u8]> = text.split(|&byte| byte == b'\n').collect();
+                    prop_assert!((1..=lines.len()).contains(&line), "{}", error);
+                    prop_assert!((1..=lines[line - 1].len() + 1).contains(&column), "{}", error);
                 }
             }
         }

@@ -1,4 +1,4 @@
-//! Long scenes are read in parts. It must not show: not where the parts meet, and not in a message.
+//! Long scenes are read in parts. It must not show, neither in the scene nor in a message.
 
 use std::fmt::Write as _;
 
@@ -25,6 +25,11 @@ fn entries() -> String {
     text
 }
 
+/// Returns the message that refuses `text`.
+fn refusal(text: &str) -> String {
+    parse(text.as_bytes(), "a.toml").expect_err("a fault").to_string()
+}
+
 fn sound(text: &str) -> SceneFile {
     let file = parse(text.as_bytes(), "a.toml").unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(file.scene.check(), Ok(()));
@@ -34,21 +39,21 @@ fn sound(text: &str) -> SceneFile {
 #[test]
 fn every_entry_arrives_in_the_order_of_the_file() {
     let (report, scene) = (report_scene().scene, sound(&format!("{}{LATE}", long())).scene);
-    let number = |kind: usize| (kind..ENTRIES).step_by(3).map(|i| i as f64);
-    let lights: Vec<f64> =
-        scene.lights[report.lights.len()..].iter().map(|l| l.position.y).collect();
-    assert_eq!(lights, number(0).collect::<Vec<_>>());
-    let spheres: Vec<f64> =
-        scene.spheres[report.spheres.len()..].iter().map(|s| s.center.y).collect();
-    assert_eq!(spheres, number(1).collect::<Vec<_>>());
-    let planes: Vec<f64> = scene.planes[report.planes.len()..].iter().map(|p| p.point.y).collect();
-    assert_eq!(planes, number(2).collect::<Vec<_>>());
+    let numbers = |kind: usize| (kind..ENTRIES).step_by(3).map(|i| i as f64);
+    let (lights, spheres, planes) = (
+        &scene.lights[report.lights.len()..],
+        &scene.spheres[report.spheres.len()..],
+        &scene.planes[report.planes.len()..],
+    );
+    assert!(lights.iter().map(|light| light.position.y).eq(numbers(0)));
+    assert!(spheres.iter().map(|sphere| sphere.center.y).eq(numbers(1)));
+    assert!(planes.iter().map(|plane| plane.point.y).eq(numbers(2)));
 
     // By name: blue, floor, green, late, magenta, red. A material may come after all that it is
     // for.
     assert_eq!(scene.materials.len(), report.materials.len() + 1);
-    assert!(scene.spheres[report.spheres.len()..].iter().all(|sphere| sphere.material == 3));
-    assert!(scene.planes[report.planes.len()..].iter().all(|plane| plane.material == 3));
+    assert!(spheres.iter().all(|sphere| sphere.material == 3));
+    assert!(planes.iter().all(|plane| plane.material == 3));
     let own = |index: usize| scene.materials[scene.spheres[index].material];
     for (index, sphere) in report.spheres.iter().enumerate() {
         assert_eq!(own(index), report.materials[sphere.material]);
@@ -57,7 +62,7 @@ fn every_entry_arrives_in_the_order_of_the_file() {
 }
 
 #[test]
-fn a_header_within_a_string_is_none() {
+fn a_header_within_a_string_is_text() {
     let mut text = String::from(REPORT_SCENE);
     let sphere = "center = [0, 0, 0]\nradius = 1\nmaterial = \"\"\"\n[[sphere]]\n[[light]]\n\"\"\"";
     for _ in 0..ENTRIES {
@@ -70,45 +75,44 @@ fn a_header_within_a_string_is_none() {
 }
 
 #[test]
-fn a_fault_is_told_as_in_a_short_scene() {
+fn an_error_reads_as_in_a_short_scene() {
     let text = format!("{}{LATE}", long());
     let spheres = sound(&text).scene.spheres.len();
     // The number of the first line behind the text.
     let line = text.lines().count() + 1;
     let sphere = "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\nmaterial =";
     let twice = "not valid TOML: duplicate key, found";
-    for (end, place, message) in [
-        ("[camera]\n".to_owned(), format!("{line}:2"), format!("{twice} `camera`")),
-        ("[image]\n".to_owned(), format!("{line}:2"), format!("{twice} `image`")),
-        (LATE.to_owned(), format!("{line}:11"), format!("{twice} `late`")),
-        ("[[lamp]]\n".to_owned(), format!("{line}:3"), "lamp: unknown key; known: ".to_owned()),
-        ("[sphere]\n".to_owned(), format!("{line}:2"), format!("{twice} `sphere`")),
+    let unknown = "expected the name of a material, found 'lat'; did you mean `late`?";
+    let string = "expected a string, found the integer 5";
+    let open = "unclosed array, expected `]`, found the end of the file";
+    for (end, line, column, message) in [
+        ("[camera]\n".to_owned(), line, 2, format!("{twice} `camera`")),
+        ("[image]\n".to_owned(), line, 2, format!("{twice} `image`")),
+        (LATE.to_owned(), line, 11, format!("{twice} `late`")),
+        ("[[lamp]]\n".to_owned(), line, 3, "lamp: unknown key; known: ".to_owned()),
+        ("[sphere]\n".to_owned(), line, 2, format!("{twice} `sphere`")),
         (
             format!("{sphere} 'lat'\n"),
-            format!("{}:12", line + 3),
-            format!(
-                "sphere[{spheres}].material: expected the name of a material, found 'lat'; did you mean"
-            ),
+            line + 3,
+            12,
+            format!("sphere[{spheres}].material: {unknown}"),
         ),
         (
             format!("{sphere} 'late'\n{sphere} 5\n"),
-            format!("{}:12", line + 7),
-            format!("sphere[{}].material: expected a string, found the integer 5", spheres + 1),
+            line + 7,
+            12,
+            format!("sphere[{}].material: {string}", spheres + 1),
         ),
-        (
-            format!("{sphere} 'late'\nradius = 2\n"),
-            format!("{}:1", line + 4),
-            format!("{twice} `radius`"),
-        ),
+        (format!("{sphere} 'late'\nradius = 2\n"), line + 4, 1, format!("{twice} `radius`")),
         (
             format!("{sphere} 'late'\n[[sphere]]\ncenter = [0, 0"),
-            format!("{}:15", line + 5),
-            "not valid TOML: unclosed array, expected `]`, found the end of the file".to_owned(),
+            line + 5,
+            15,
+            format!("not valid TOML: {open}"),
         ),
     ] {
-        let error =
-            parse(format!("{text}{end}").as_bytes(), "a.toml").expect_err("a fault").to_string();
-        assert!(error.starts_with(&format!("a.toml:{place}: {message}")), "{error}");
+        let error = refusal(&format!("{text}{end}"));
+        assert!(error.starts_with(&format!("a.toml:{line}:{column}: {message}")), "{error}");
     }
 }
 
@@ -117,16 +121,14 @@ fn a_material_of_another_part_is_not_defined_again() {
     let text = format!("{}{LATE}{}", long(), entries());
     let line = text.lines().count() + 1;
     sound(&format!("{text}[material.later]\ncolor = [0, 0, 0]\n"));
-    let error = parse(format!("{text}{LATE}").as_bytes(), "a.toml")
-        .expect_err("a material twice")
-        .to_string();
-    assert_eq!(error, format!("a.toml:{line}:11: not valid TOML: duplicate key, found `late`"));
+    let expected = format!("a.toml:{line}:11: not valid TOML: duplicate key, found `late`");
+    assert_eq!(refusal(&format!("{text}{LATE}")), expected);
 }
 
 #[test]
-fn what_is_written_inline_is_not_added_to() {
-    let camera = "[camera]\nposition = [0, 0, 2]\nlook_at = [0, 0, 0]\nup = [0, 1, 0]\nfocal_length = 2\n\
-                  screen_width = 2\n";
+fn headers_do_not_add_to_inline_values() {
+    let camera = "[camera]\nposition = [0, 0, 2]\nlook_at = [0, 0, 0]\nup = [0, 1, 0]\n\
+                  focal_length = 2\nscreen_width = 2\n";
     let other = "[material.other]\ncolor = [0, 0, 0]\n";
     let late = "material = { late = { color = [0, 0, 0] } }\n";
     sound(&format!("{late}{camera}{}", entries()));
@@ -137,11 +139,9 @@ fn what_is_written_inline_is_not_added_to() {
     ] {
         // Only in a later part: the first has no header of this key.
         let text = format!("{inline}{camera}{}{}{other}", "# long\n".repeat(10_000), entries());
-        let error = parse(text.as_bytes(), "a.toml").expect_err("a key twice").to_string();
-        assert!(
-            error.ends_with(&format!("not valid TOML: duplicate key, found `{key}`")),
-            "{error}"
-        );
+        let expected = format!("not valid TOML: duplicate key, found `{key}`");
+        let error = refusal(&text);
+        assert!(error.ends_with(&expected), "{error}");
     }
 }
 
@@ -153,7 +153,7 @@ fn the_end_of_a_part_is_not_the_end_of_the_file() {
     for (at, end) in ends {
         let broken = format!("{}\n0\n{}", &text[..at], &text[at + end.len()..]);
         let line = broken[..at].matches('\n').count() + 4;
-        let error = parse(broken.as_bytes(), "a.toml").expect_err("an open array").to_string();
+        let error = refusal(&broken);
         let expected =
             "not valid TOML: missing comma between array elements, expected `,`, found `[[";
         assert!(error.starts_with(&format!("a.toml:{line}:1: {expected}")), "{error}");

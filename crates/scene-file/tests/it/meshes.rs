@@ -1,12 +1,10 @@
-//! Meshes: which triangles an OBJ file stands for, and with which message it is refused.
+//! Meshes: the triangles that an OBJ file stands for, and the messages that refuse it.
 
 use std::fs;
 use std::path::Path;
 
 use rayweave_core::scene::Triangle;
-use rayweave_scene_file::{
-    MAX_BYTES, MAX_MESH_TRIANGLES, SceneFile, SceneFileError, load, parse, report_scene,
-};
+use rayweave_scene_file::{MAX_BYTES, MAX_MESH_TRIANGLES, SceneFile, load, parse, report_scene};
 use tempfile::TempDir;
 
 const SCENE: &str = r#"
@@ -22,15 +20,15 @@ color = [0.0, 0.0, 1.0]
 color = [1.0, 0.0, 0.0]
 "#;
 
-/// Four corners of a square, on which the faces of most tests stand.
+/// The vertices of a square, for the faces of most tests.
 const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
-/// The lines of a mesh in a scene file.
+/// Returns the lines of a mesh in a scene file.
 fn mesh(path: &str, material: &str) -> String {
     format!("[[mesh]]\npath = '{path}'\nmaterial = '{material}'\n")
 }
 
-/// A folder with these files in it.
+/// Makes a folder with these files in it.
 fn folder(files: &[(&str, &[u8])]) -> TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     for (path, contents) in files {
@@ -41,7 +39,7 @@ fn folder(files: &[(&str, &[u8])]) -> TempDir {
     folder
 }
 
-/// What comes of a scene of one mesh, and its error without the path of the folder.
+/// Reads a scene of one mesh. Its error is without the path of the folder.
 fn of_obj(obj: impl AsRef<[u8]>) -> Result<SceneFile, String> {
     let scene = format!("{SCENE}{}", mesh("a.obj", "red"));
     let folder = folder(&[("a.toml", scene.as_bytes()), ("a.obj", obj.as_ref())]);
@@ -49,22 +47,20 @@ fn of_obj(obj: impl AsRef<[u8]>) -> Result<SceneFile, String> {
 }
 
 fn loaded(folder: &Path) -> Result<SceneFile, String> {
-    load(&folder.join("a.toml")).map_err(|error| below(folder, &error))
+    load(&folder.join("a.toml")).map_err(|error| {
+        let error = error.to_string();
+        let folder = format!("{}{}", folder.display(), std::path::MAIN_SEPARATOR);
+        error.strip_prefix(&folder).unwrap_or_else(|| panic!("{error}")).to_owned()
+    })
 }
 
-fn below(folder: &Path, error: &SceneFileError) -> String {
-    let error = error.to_string();
-    let folder = format!("{}{}", folder.display(), std::path::MAIN_SEPARATOR);
-    error.strip_prefix(&folder).unwrap_or_else(|| panic!("{error}")).to_owned()
-}
-
-/// The corners of each triangle, all whole numbers, as `x,y,z`.
+/// Shows the corners of each triangle, all whole numbers, as `x,y,z`.
 fn corners(triangles: &[Triangle]) -> Vec<String> {
     let corner = |v: glam::DVec3| format!("{},{},{}", v.x, v.y, v.z);
     triangles.iter().map(|triangle| triangle.vertices.map(corner).join(" ")).collect()
 }
 
-/// The triangles of an OBJ file, none of which is skipped.
+/// Shows the triangles of an OBJ file, none of which is skipped.
 fn triangles(obj: impl AsRef<[u8]>) -> Vec<String> {
     let file = of_obj(obj).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(file.scene.check(), Ok(()));
@@ -131,20 +127,19 @@ fn a_negative_corner_counts_from_the_line_up() {
 }
 
 #[test]
-fn what_is_not_of_the_contract_is_ignored() {
+fn other_lines_and_words_are_ignored() {
     let plain = triangles(format!("{SQUARE}f 1 2 3\n"));
     for obj in [
         "# v 5 5 5\n\n \t\nv 0 0 0 1.0\nv 1 0 0 0.5 0.5 0.5\nv 1 1 0 # f 1 2 3\nf 1 2 3# 9\n",
-        "mtllib a.mtl\no name\ng a b\ns off\nusemtl red\nv 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\nl 1 9\np 0\n",
-        "vn 9 9 9\nvt 9 9\nvp 9\nv 0 0 0\nvn nan\nv 1 0 0 nan x\nv 1 1 0\nfo 1 2\nF 1 2\nV 1\ncstype bezier\nf 1 2 3\n",
+        "mtllib a.mtl\no name\ng a b\ns off\nusemtl red\nv 0 0 0\nv 1 0 0\nv 1 1 0\n\
+         f 1 2 3\nl 1 9\np 0\n",
+        "vn 9 9 9\nvt 9 9\nvp 9\nv 0 0 0\nvn nan\nv 1 0 0 nan x\nv 1 1 0\nfo 1 2\nF 1 2\n\
+         V 1\ncstype bezier\nf 1 2 3\n",
         "  v\t0  0 0 \r\n\tv 1.0 0e3 -0\r\nv +1. 1 .0\r\n f 1\t2  3 \r\n\r\n",
         "\u{feff}v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3",
     ] {
-        assert_eq!(
-            triangles(obj).iter().map(|t| t.replace("-0", "0")).collect::<Vec<_>>(),
-            plain,
-            "{obj}"
-        );
+        let found: Vec<String> = triangles(obj).iter().map(|t| t.replace("-0", "0")).collect();
+        assert_eq!(found, plain, "{obj}");
     }
     // Names and comments in any encoding.
     let latin = [b"g caf\xe9 # \xff\n".as_slice(), SQUARE.as_bytes(), b"f 1 2 3 # \xe9\n"].concat();
@@ -152,7 +147,7 @@ fn what_is_not_of_the_contract_is_ignored() {
 }
 
 #[test]
-fn numbers_are_kept_as_exactly_as_those_of_a_scene() {
+fn numbers_are_as_exact_as_those_of_a_scene() {
     let file =
         of_obj("v 0.1 1e-3 123456789.123456789\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("sound");
     assert_eq!(file.scene.triangles[0].vertices[0], [0.1, 0.001, 123_456_789.123_456_79].into());
@@ -169,33 +164,35 @@ fn triangles_without_area_are_skipped_and_counted() {
 }
 
 #[test]
-fn a_fault_is_told_with_the_line_and_column_of_the_obj_file() {
+fn an_error_has_the_line_and_column_of_the_obj_file() {
     let vertex = "expected `v` and three numbers, found";
+    let number = "expected a finite number, found";
     let face = "expected `f` and three corners or more, found";
-    let of_four = "expected the number of one of the 4 vertices above, found";
-    for (line, message) in [
-        ("v 1 2", format!("a.obj:5:1: {vertex} `v 1 2`")),
-        ("  v 1 2 # 3", format!("a.obj:5:3: {vertex} `v 1 2`")),
-        ("v", format!("a.obj:5:1: {vertex} `v`")),
-        ("v 1 x 3", "a.obj:5:5: expected a finite number, found `x`".into()),
-        ("v 1 2 nan", "a.obj:5:7: expected a finite number, found `nan`".into()),
-        ("v inf 2 3", "a.obj:5:3: expected a finite number, found `inf`".into()),
-        ("v 1 -1e999 3", "a.obj:5:5: expected a finite number, found `-1e999`".into()),
-        ("v 1,5 2 3", "a.obj:5:3: expected a finite number, found `1,5`".into()),
-        ("f", format!("a.obj:5:1: {face} `f`")),
-        ("f 1 2", format!("a.obj:5:1: {face} `f 1 2`")),
-        ("f 1 2 # 3", format!("a.obj:5:1: {face} `f 1 2`")),
-        ("f 1 2 5", format!("a.obj:5:7: {of_four} `5`")),
-        ("f 1 2 3 5/1", format!("a.obj:5:9: {of_four} `5/1`")),
-        ("f 0 1 2", format!("a.obj:5:3: {of_four} `0`")),
-        ("f 1 -5 2", format!("a.obj:5:5: {of_four} `-5`")),
-        ("f 1 2 x", format!("a.obj:5:7: {of_four} `x`")),
-        ("f 1 2 1.0", format!("a.obj:5:7: {of_four} `1.0`")),
-        ("f 1 2 /3", format!("a.obj:5:7: {of_four} `/3`")),
-        ("f 1 2 99999999999999999999", format!("a.obj:5:7: {of_four} `99999999999999999999`")),
-        ("f 1 2 -9223372036854775808", format!("a.obj:5:7: {of_four} `-9223372036854775808`")),
-        ("f 1 2 \\", format!("a.obj:5:7: {of_four} `\\`")),
+    let corner = "expected the number of one of the 4 vertices above, found";
+    for (line, column, expected, found) in [
+        ("v 1 2", 1, vertex, "v 1 2"),
+        ("  v 1 2 # 3", 3, vertex, "v 1 2"),
+        ("v", 1, vertex, "v"),
+        ("v 1 x 3", 5, number, "x"),
+        ("v 1 2 nan", 7, number, "nan"),
+        ("v inf 2 3", 3, number, "inf"),
+        ("v 1 -1e999 3", 5, number, "-1e999"),
+        ("v 1,5 2 3", 3, number, "1,5"),
+        ("f", 1, face, "f"),
+        ("f 1 2", 1, face, "f 1 2"),
+        ("f 1 2 # 3", 1, face, "f 1 2"),
+        ("f 1 2 5", 7, corner, "5"),
+        ("f 1 2 3 5/1", 9, corner, "5/1"),
+        ("f 0 1 2", 3, corner, "0"),
+        ("f 1 -5 2", 5, corner, "-5"),
+        ("f 1 2 x", 7, corner, "x"),
+        ("f 1 2 1.0", 7, corner, "1.0"),
+        ("f 1 2 /3", 7, corner, "/3"),
+        ("f 1 2 99999999999999999999", 7, corner, "99999999999999999999"),
+        ("f 1 2 -9223372036854775808", 7, corner, "-9223372036854775808"),
+        ("f 1 2 \\", 7, corner, "\\"),
     ] {
+        let message = format!("a.obj:5:{column}: {expected} `{found}`");
         // What comes below the line is no help: not the vertices, and not the sound face.
         let found = of_obj(format!("{SQUARE}{line}\nv 2 2 2\nf 1 2 3\n")).expect_err(line);
         assert_eq!(found, message);
@@ -210,7 +207,8 @@ fn a_fault_is_told_with_the_line_and_column_of_the_obj_file() {
 
 #[test]
 fn a_mesh_without_a_triangle_is_a_fault_of_the_scene_file() {
-    let message = "a.toml:13:8: mesh[0].path: expected an OBJ file with a triangle that has an area, found 'a.obj'";
+    let message = "a.toml:13:8: mesh[0].path: expected an OBJ file with a triangle that has an \
+                   area, found 'a.obj'";
     for obj in ["", "# nothing\n", SQUARE, "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"] {
         assert_eq!(of_obj(obj).expect_err("no triangle"), message);
     }
@@ -235,24 +233,18 @@ fn a_mesh_that_cannot_be_read_is_named() {
     let large = loaded(folder.path()).expect_err("a large mesh");
     assert_eq!(large, "a.obj: larger than the 256 MiB that a file may have");
     fs::remove_file(&path).and_then(|()| fs::create_dir(&path)).expect("a folder");
-    assert_eq!(
-        loaded(folder.path()).expect_err("no file"),
-        "a.obj: expected a file, found a folder"
-    );
+    let no_file = loaded(folder.path()).expect_err("no file");
+    assert_eq!(no_file, "a.obj: expected a file, found a folder");
 }
 
 #[test]
 fn few_bytes_cannot_stand_for_any_number_of_triangles() {
     let fan = |triangles: usize| format!("{SQUARE}f 1 2{}\n", " 3 2".repeat(triangles / 2));
-    assert_eq!(
-        of_obj(fan(MAX_MESH_TRIANGLES)).expect("sound").scene.triangles.len(),
-        MAX_MESH_TRIANGLES
-    );
+    let most = of_obj(fan(MAX_MESH_TRIANGLES)).expect("sound").scene.triangles;
+    assert_eq!(most.len(), MAX_MESH_TRIANGLES);
     let error = of_obj(fan(MAX_MESH_TRIANGLES + 2)).expect_err("more than may be");
-    assert_eq!(
-        error,
-        "a.obj:5:1: more than the 8388608 triangles that the meshes of a scene may have"
-    );
+    let limit = "more than the 8388608 triangles that the meshes of a scene may have";
+    assert_eq!(error, format!("a.obj:5:1: {limit}"));
 }
 
 #[test]
