@@ -13,10 +13,20 @@ pub type Rgb = [f32; 3];
 /// The most pixels an [`Image`] may have: 2^28, which is 3 GiB.
 pub const MAX_PIXELS: u64 = 1 << 28;
 
-/// A picture in linear light, row by row from the top, each row from the left.
+/// An image in linear light, row by row from the top, each row from the left.
 ///
-/// Two pictures are the same when their bits are: compare [`Image::digest`]s, or pixels with
+/// Two images are the same when their bits are: compare [`Image::digest`]s, or pixels with
 /// [`f32::to_bits`]. `==` compares bits too, so a NaN equals itself.
+///
+/// ```
+/// use rayweave_contract::Image;
+///
+/// let mut image = Image::new(3, 2)?;
+/// image.pixels_mut()[4] = [0.25, 0.5, f32::NAN];
+/// assert_eq!(image.position(4), (1, 1));
+/// assert_eq!(image, image.clone());
+/// # Ok::<(), rayweave_contract::ImageError>(())
+/// ```
 #[derive(Clone)]
 pub struct Image {
     width: u32,
@@ -24,12 +34,20 @@ pub struct Image {
     pixels: Vec<Rgb>,
 }
 
-/// A picture that would not fit in memory, or has no pixels.
+/// The reason why there is no image of a size.
+///
+/// ```
+/// use rayweave_contract::{Image, ImageError};
+///
+/// let error = Image::new(3, 0).unwrap_err();
+/// assert_eq!(error, ImageError::Empty { width: 3, height: 0 });
+/// assert!(error.to_string().ends_with("choose a width and a height of 1 or more"));
+/// ```
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 pub enum ImageError {
-    /// More than [`MAX_PIXELS`].
+    /// It has more than [`MAX_PIXELS`] pixels.
     #[error(
-        "a picture of {width} x {height} pixels is over the limit of {MAX_PIXELS} pixels: choose a smaller size"
+        "an image of {width} x {height} pixels is over the limit of {MAX_PIXELS} pixels: choose a smaller size"
     )]
     TooLarge {
         /// In pixels.
@@ -37,9 +55,9 @@ pub enum ImageError {
         /// In pixels.
         height: u32,
     },
-    /// A width or height of 0.
+    /// Its width or height is 0.
     #[error(
-        "a picture of {width} x {height} has no pixels: choose a width and a height of 1 or more"
+        "an image of {width} x {height} has no pixels: choose a width and a height of 1 or more"
     )]
     Empty {
         /// In pixels.
@@ -47,8 +65,8 @@ pub enum ImageError {
         /// In pixels.
         height: u32,
     },
-    /// The allocator refused.
-    #[error("no memory for a picture of {width} x {height} pixels: choose a smaller size")]
+    /// The allocator refused the memory.
+    #[error("no memory for an image of {width} x {height} pixels: choose a smaller size")]
     NoMemory {
         /// In pixels.
         width: u32,
@@ -58,11 +76,11 @@ pub enum ImageError {
 }
 
 impl Image {
-    /// A picture of `width` x `height` pixels, all filled with `color`.
+    /// Returns an image of `width` x `height` pixels, all filled with `color`.
     ///
     /// # Errors
     ///
-    /// A size without pixels, above [`MAX_PIXELS`], or that the allocator refuses.
+    /// [`ImageError`]: a size without pixels, above [`MAX_PIXELS`], or too large for the allocator.
     pub fn filled(width: u32, height: u32, color: Rgb) -> Result<Self, ImageError> {
         if width == 0 || height == 0 {
             return Err(ImageError::Empty { width, height });
@@ -77,7 +95,7 @@ impl Image {
         Ok(Self { width, height, pixels })
     }
 
-    /// A black picture; errors as [`Image::filled`].
+    /// Returns a black image of `width` x `height` pixels.
     ///
     /// # Errors
     ///
@@ -86,38 +104,38 @@ impl Image {
         Self::filled(width, height, [0.0; 3])
     }
 
-    /// In pixels, 1 or more.
+    /// Returns the width in pixels, 1 or more.
     #[must_use]
     pub fn width(&self) -> u32 {
         self.width
     }
 
-    /// In pixels, 1 or more.
+    /// Returns the height in pixels, 1 or more.
     #[must_use]
     pub fn height(&self) -> u32 {
         self.height
     }
 
-    /// Row by row from the top: pixel `(x, y)` is number `y * width + x`.
+    /// Returns the pixels row by row from the top: pixel `(x, y)` is number `y * width + x`.
     #[must_use]
     pub fn pixels(&self) -> &[Rgb] {
         &self.pixels
     }
 
-    /// As [`Image::pixels`], to write.
+    /// Returns the pixels as [`Image::pixels`] does, for writing.
     #[must_use]
     pub fn pixels_mut(&mut self) -> &mut [Rgb] {
         &mut self.pixels
     }
 
-    /// The column and row of pixel number `index`.
+    /// Returns the column and the row of pixel number `index`.
     #[must_use]
     pub fn position(&self, index: usize) -> (u32, u32) {
         let width = self.width as usize;
         ((index % width) as u32, (index / width) as u32)
     }
 
-    /// Each channel in 8 bits: `floor(255 clamp(c, 0, 1) + 0.5)`, without gamma; 0 for a NaN.
+    /// Returns each channel in 8 bits: `floor(255 clamp(c, 0, 1) + 0.5)`, without gamma; 0 for a NaN.
     #[must_use]
     pub fn to_rgb8(&self) -> Vec<u8> {
         let byte =
@@ -125,13 +143,13 @@ impl Image {
         self.pixels.as_flattened().iter().map(byte).collect()
     }
 
-    /// Overwrites every pixel.
+    /// Overwrites every pixel with `color`.
     pub fn fill(&mut self, color: Rgb) {
         self.pixels.fill(color);
     }
 
-    /// Cuts the picture into squares of `size` pixels a side, the last of a row or column smaller
-    /// where the picture ends: from the top, each row of tiles from the left.
+    /// Cuts the image into squares of `size` pixels a side, from the top, each row of tiles from the
+    /// left. The last tiles of a row or a column are smaller where the image ends.
     #[must_use]
     pub fn tiles(&mut self, size: NonZeroU32) -> Vec<Tile<'_>> {
         let (width, size) = (self.width as usize, size.get().min(self.width.max(self.height)));
@@ -152,7 +170,7 @@ impl Image {
         tiles
     }
 
-    /// SHA-256 over width, height (as 32-bit integers) and the bits of every channel, all
+    /// Returns the SHA-256 over width, height (as 32-bit integers) and the bits of every channel, all
     /// little-endian.
     #[must_use]
     pub fn digest(&self) -> Digest {
@@ -185,12 +203,22 @@ impl fmt::Debug for Image {
     }
 }
 
-/// A picture's fingerprint: equal exactly when size and bits are.
+/// The fingerprint of an image: equal exactly when size and bits are.
+///
+/// ```
+/// use rayweave_contract::{Digest, Image};
+///
+/// let digest = Image::new(3, 2)?.digest();
+/// assert_ne!(digest, Image::new(2, 3)?.digest());
+/// assert_eq!(digest.to_string().parse::<Digest>()?, digest);
+/// assert!(digest.to_string().starts_with(&digest.short()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Digest([u8; 32]);
 
 impl Digest {
-    /// The first 16 hexadecimal digits, enough for a table.
+    /// Returns the first 16 hexadecimal digits, enough for a table.
     #[must_use]
     pub fn short(&self) -> String {
         let mut text = self.to_string();
@@ -205,7 +233,7 @@ impl fmt::Display for Digest {
     }
 }
 
-/// The 64 hexadecimal digits that a digest is displayed as.
+/// Reads the 64 hexadecimal digits that a digest is displayed as.
 impl FromStr for Digest {
     type Err = ParseDigestError;
 
@@ -222,7 +250,11 @@ impl FromStr for Digest {
     }
 }
 
-/// A text that is no [`Digest`].
+/// The error for a text that is not a [`Digest`].
+///
+/// ```
+/// assert!("123".parse::<rayweave_contract::Digest>().is_err());
+/// ```
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 #[error("a digest has 64 hexadecimal digits")]
 pub struct ParseDigestError;

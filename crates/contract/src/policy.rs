@@ -1,9 +1,9 @@
-//! What a strategy decides: the granularity of its pieces, their scheduling, and their output.
+//! The decisions of a strategy: the granularity of its pieces, their scheduling, and their output.
 
 use std::fmt;
 use std::num::NonZeroUsize;
 
-/// What a strategy decides. A simulation goes by the policy alone.
+/// The decisions of a strategy. A simulation goes by the policy alone.
 ///
 /// ```
 /// use rayweave_contract::{Granularity, Output, Policy, Scheduling};
@@ -20,13 +20,17 @@ use std::num::NonZeroUsize;
 pub struct Policy {
     /// The piece that a thread computes at once; pixels of one piece can share samples.
     pub granularity: Granularity,
-    /// Which thread gets which pieces.
+    /// The rule by which threads get pieces.
     pub scheduling: Scheduling,
-    /// How a finished piece gets into the image.
+    /// The way of a finished piece into the image.
     pub output: Output,
 }
 
 /// The piece that a thread computes at once.
+///
+/// ```
+/// assert_eq!(rayweave_contract::Granularity::Tile.to_string(), "tile");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Granularity {
     /// One pixel.
@@ -39,7 +43,15 @@ pub enum Granularity {
     Band,
 }
 
-/// Which thread gets which pieces. Pieces are numbered from the top left, row by row.
+/// The rule by which threads get pieces, in OpenMP's words. Pieces are numbered from the top left,
+/// row by row.
+///
+/// ```
+/// use rayweave_contract::Scheduling;
+///
+/// let words = [Scheduling::Static, Scheduling::Dynamic { chunk: 1 }, Scheduling::RecursiveSplit];
+/// assert_eq!(words.map(|word| word.to_string()), ["static", "dynamic", "recursive-split"]);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scheduling {
     /// Each thread gets one of N equal ranges, fixed beforehand.
@@ -60,7 +72,11 @@ pub enum Scheduling {
     RecursiveSplit,
 }
 
-/// How a finished piece gets into the image.
+/// The way of a finished piece into the image.
+///
+/// ```
+/// assert_eq!(rayweave_contract::Output::InPlace.to_string(), "in-place");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Output {
     /// It is computed in its place.
@@ -71,7 +87,7 @@ pub enum Output {
     Channel,
 }
 
-/// Where a strategy starts its threads, and so which figure contains that cost.
+/// The place where a strategy starts its threads: it says which figure contains that cost.
 ///
 /// ```
 /// use rayweave_contract::Threads;

@@ -11,6 +11,50 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use thiserror::Error;
 
 /// A way to spread work over threads.
+///
+/// ```
+/// use rayweave_contract::{
+///     Granularity, Image, Output, Plan, Policy, Renderer, Scheduling, Strategy, StrategyError,
+///     Threads, Work, render_tile,
+/// };
+/// use std::num::NonZeroU32;
+///
+/// /// One tile after the other on the caller's thread.
+/// struct Alone;
+///
+/// impl Strategy for Alone {
+///     fn name(&self) -> &'static str {
+///         "alone"
+///     }
+///
+///     fn summary(&self) -> &'static str {
+///         "one tile after the other"
+///     }
+///
+///     fn threads(&self) -> Threads {
+///         Threads::None
+///     }
+///
+///     fn policy(&self) -> Policy {
+///         let (granularity, output) = (Granularity::Tile, Output::InPlace);
+///         Policy { granularity, scheduling: Scheduling::Static, output }
+///     }
+///
+///     fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
+///         Ok(Box::new(Tiles(plan.tile)))
+///     }
+/// }
+///
+/// struct Tiles(NonZeroU32);
+///
+/// impl Renderer for Tiles {
+///     fn render(&mut self, work: &dyn Work, image: &mut Image) -> Result<(), StrategyError> {
+///         image.tiles(self.0).iter_mut().try_for_each(|tile| render_tile("alone", work, tile))
+///     }
+/// }
+///
+/// assert_eq!(Alone.policy().scheduling.to_string(), "static");
+/// ```
 pub trait Strategy: Sync {
     /// Returns the name on the command line and in every table: lower case, words joined by `-`.
     fn name(&self) -> &'static str;
@@ -39,7 +83,7 @@ pub trait Strategy: Sync {
     fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError>;
 }
 
-/// A prepared strategy, which renders as often as asked.
+/// A prepared strategy, which renders as often as asked. [`Strategy`] has an example.
 pub trait Renderer {
     /// Fills every pixel of `image` with what `work` computes for it.
     ///

@@ -7,23 +7,31 @@ use crate::image::Rgb;
 use std::fmt;
 
 /// A rectangle of pixels.
+///
+/// ```
+/// use rayweave_contract::Rect;
+///
+/// let rect = Rect { x: 4, y: 8, width: 2, height: 1 };
+/// assert!(rect.contains(5, 8) && !rect.contains(6, 8));
+/// assert_eq!(rect.to_string(), "2x1 at (4, 8)");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Rect {
-    /// Column of its left pixels.
+    /// The column of its leftmost pixels.
     pub x: u32,
-    /// Row of its top pixels.
+    /// The row of its topmost pixels.
     pub y: u32,
-    /// In pixels.
+    /// The width in pixels.
     pub width: u32,
-    /// In pixels.
+    /// The height in pixels.
     pub height: u32,
 }
 
 impl Rect {
-    /// Whether pixel `(x, y)` is in it.
+    /// Returns whether pixel `(x, y)` is in the rectangle.
     #[must_use]
     pub fn contains(&self, x: u32, y: u32) -> bool {
-        // Wrapping: what lies before it becomes far too large.
+        // Wrapping: the difference to a pixel before it becomes far too large.
         x.wrapping_sub(self.x) < self.width && y.wrapping_sub(self.y) < self.height
     }
 }
@@ -34,7 +42,26 @@ impl fmt::Display for Rect {
     }
 }
 
-/// A rectangle of the picture and the sole right to write it.
+/// A rectangle of the image and the sole right to write it.
+///
+/// ```
+/// use rayweave_contract::Image;
+/// use std::num::NonZeroU32;
+///
+/// let mut image = Image::new(5, 3)?;
+/// let mut tiles = image.tiles(NonZeroU32::new(2).unwrap());
+/// let sizes: Vec<(u32, u32)> =
+///     tiles.iter().map(|tile| (tile.rect().width, tile.rect().height)).collect();
+/// assert_eq!(sizes, [(2, 2), (2, 2), (1, 2), (2, 1), (2, 1), (1, 1)]);
+/// // The tiles are disjoint, so threads may fill them at the same time.
+/// std::thread::scope(|scope| {
+///     for tile in &mut tiles {
+///         scope.spawn(|| tile.rows().for_each(|(y, row)| row.fill([y as f32; 3])));
+///     }
+/// });
+/// assert_eq!(image.pixels()[14], [2.0; 3]);
+/// # Ok::<(), rayweave_contract::ImageError>(())
+/// ```
 #[derive(Debug)]
 pub struct Tile<'a> {
     rect: Rect,
@@ -49,26 +76,26 @@ enum Rows<'a> {
 }
 
 impl<'a> Tile<'a> {
-    /// The tile of the single pixel `(x, y)`, wherever its colour is kept.
+    /// Returns the tile of the single pixel `(x, y)`, whose colour may be kept anywhere.
     #[must_use]
     pub fn pixel(x: u32, y: u32, color: &'a mut Rgb) -> Self {
         Self::row(x, y, std::slice::from_mut(color))
     }
 
-    /// The tile of the pixels from `(x, y)` to the right, wherever their colours are kept: as many
-    /// as there are colours, 65,535 at the most in a picture that a scene may ask for.
+    /// Returns the tile of the pixels from `(x, y)` to the right, one for each of `colors`, which
+    /// may be kept anywhere. There are at most 65,535 in an image that a scene may ask for.
     #[must_use]
     pub fn row(x: u32, y: u32, colors: &'a mut [Rgb]) -> Self {
         let rect = Rect { x, y, width: colors.len() as u32, height: 1 };
         Self { rect, rows: Rows::One(colors) }
     }
 
-    /// The tile of whole rows of a picture from row `y` down, wherever their colours are kept: row
-    /// after row, each of `width` pixels.
+    /// Returns the tile of whole rows of an image from row `y` down. Their colours may be kept
+    /// anywhere: row after row, each of `width` pixels.
     ///
     /// # Panics
     ///
-    /// Unless `colors` are one row or more, and no part of one.
+    /// `colors` has no row, or a part of one.
     #[must_use]
     pub fn band(y: u32, width: u32, colors: &'a mut [Rgb]) -> Self {
         let row = width as usize;
@@ -79,7 +106,7 @@ impl<'a> Tile<'a> {
         Self::of_rows(0, y, colors.chunks_exact_mut(row))
     }
 
-    /// The tile of one row or more.
+    /// Returns the tile of one row or more.
     pub(crate) fn of_rows(
         x: u32,
         y: u32,
@@ -97,17 +124,17 @@ impl<'a> Tile<'a> {
         Self { rect, rows: Rows::Many(many) }
     }
 
-    /// Which pixels of the picture these are.
+    /// Returns the position and the size of the tile in the image.
     #[must_use]
     pub fn rect(&self) -> Rect {
         self.rect
     }
 
-    /// The pixels of row `y`, counted from the tile's top.
+    /// Returns the pixels of row `y`, counted from the top of the tile.
     ///
     /// # Panics
     ///
-    /// Unless `y` is below the tile's height.
+    /// `y` is not below the tile's height.
     #[must_use]
     pub fn row_mut(&mut self, y: usize) -> &mut [Rgb] {
         match &mut self.rows {
@@ -116,7 +143,7 @@ impl<'a> Tile<'a> {
         }
     }
 
-    /// The rows from the top, each with its y and its pixels from the left.
+    /// Returns the rows from the top, each with its y in the image and its pixels from the left.
     pub fn rows(&mut self) -> impl Iterator<Item = (u32, &mut [Rgb])> {
         let rows = match &mut self.rows {
             Rows::One(row) => std::slice::from_mut(row),
