@@ -1,14 +1,11 @@
 //! The image, its digest, and the cutting of it into tiles.
 
-use crate::tile::Tile;
+use crate::tile::{Rgb, Tile};
 use sha2::{Digest as _, Sha256};
 use std::fmt;
 use std::num::NonZeroU32;
 use std::str::FromStr;
 use thiserror::Error;
-
-/// A linear RGB colour, not clamped.
-pub type Rgb = [f32; 3];
 
 /// The most pixels an [`Image`] may have: 2^28, which is 3 GiB.
 pub const MAX_PIXELS: u64 = 1 << 28;

@@ -46,8 +46,8 @@ mod strategy;
 mod tile;
 mod work;
 
-pub use image::{Digest, Image, ImageError, MAX_PIXELS, ParseDigestError, Rgb};
+pub use image::{Digest, Image, ImageError, MAX_PIXELS, ParseDigestError};
 pub use policy::{Granularity, Output, Policy, Scheduling, Threads};
 pub use strategy::{Plan, Renderer, Strategy, StrategyError, panic_message, render_tile};
-pub use tile::{Rect, Tile};
+pub use tile::{Rect, Rgb, Tile};
 pub use work::Work;

@@ -3,8 +3,10 @@
 //! The borrow checker proves that tiles are disjoint, so threads fill them at the same time without
 //! a lock and without `unsafe`.
 
-use crate::image::Rgb;
 use std::fmt;
+
+/// A linear RGB colour, not clamped.
+pub type Rgb = [f32; 3];
 
 /// A rectangle of pixels.
 ///
