@@ -2,8 +2,8 @@
 
 use crate::execution::{Execution, Search};
 use crate::formulas::{Compiled, Family};
-use crate::lane::Scalar;
 use crate::scene::{Scene, SceneError};
+use crate::simd::lane::Scalar;
 use crate::trace::World;
 use std::fmt;
 

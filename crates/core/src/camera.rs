@@ -1,9 +1,9 @@
 //! From a place in the picture to a ray.
 
-use crate::lane::{Lane, Scalar};
 use crate::ray::Ray;
 use crate::scene::{self, unit};
-use crate::vector::Vector;
+use crate::simd::lane::{Lane, Scalar};
+use crate::simd::vector::Vector;
 
 /// The camera of a picture of a certain size and lattice density.
 ///

@@ -2,11 +2,11 @@
 
 use crate::execution::Search;
 use crate::formulas::{Arithmetic, Compiled, Family};
-use crate::lane::Scalar;
 use crate::ray::Ray;
 use crate::scene::{Scene, SceneError, near_one};
+use crate::simd::lane::Scalar;
+use crate::simd::vector::Vector;
 use crate::trace::World;
-use crate::vector::Vector;
 use glam::DVec3;
 
 /// Where a ray hits.

@@ -1,10 +1,10 @@
 //! Surfaces and lights in the precision of the picture, and Phong's model of how one answers the
 //! other (Bui Tuong Phong, Illumination for Computer Generated Pictures, 1975).
 
-use crate::bundle::Bundle;
-use crate::lane::{Lane, Scalar};
+use crate::accel::cones::Bundle;
 use crate::scene;
-use crate::vector::Vector;
+use crate::simd::lane::{Lane, Scalar};
+use crate::simd::vector::Vector;
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Material<S> {

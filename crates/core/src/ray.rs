@@ -1,7 +1,7 @@
 //! A ray, and what every shape asks of it.
 
-use crate::lane::{Lane, Mask, Scalar};
-use crate::vector::Vector;
+use crate::simd::lane::{Lane, Mask, Scalar};
+use crate::simd::vector::Vector;
 
 /// The half line `origin + t direction` for `t > 0`.
 #[derive(Clone, Copy, Debug)]

@@ -1,18 +1,18 @@
 //! The colour that a ray brings back: Whitted's recursion (An Improved Illumination Model for
 //! Shaded Display, 1980) as a loop, since a mirror sends on just one ray.
 
-use crate::bundle::Bundle;
-use crate::confinement::hiding_planes;
+use crate::accel::behind_culling::in_front;
+use crate::accel::cones::Bundle;
+use crate::accel::plane_culling::hiding_planes;
+use crate::accel::primitives::{Hit, Primitives};
 use crate::execution::Search;
 use crate::formulas::{Family, LightPath};
-use crate::in_front::in_front;
-use crate::lane::{Lane, Mask, Scalar};
 use crate::material::{Finish, Light, Material, power};
-use crate::primitives::{Hit, Primitives};
 use crate::ray::Ray;
 use crate::scene::{Plane, Scene};
 use crate::shapes::SurfacePoint;
-use crate::vector::Vector;
+use crate::simd::lane::{Lane, Mask, Scalar};
+use crate::simd::vector::Vector;
 use glam::DVec3;
 use std::marker::PhantomData;
 

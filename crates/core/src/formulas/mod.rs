@@ -9,7 +9,6 @@ mod textbook;
 pub(crate) use robust::Robust;
 pub(crate) use textbook::Textbook;
 
-use crate::lane::{Lane, Scalar};
 use crate::precision::Precision;
 use crate::ray::Ray;
 use crate::shapes::SurfacePoint;
@@ -17,7 +16,8 @@ use crate::shapes::cylinder::{self, Cylinder};
 use crate::shapes::plane::Plane;
 use crate::shapes::sphere::{self, Sphere};
 use crate::shapes::triangle::{self, Triangle};
-use crate::vector::Vector;
+use crate::simd::lane::{Lane, Scalar};
+use crate::simd::vector::Vector;
 use std::fmt::{self, Debug};
 
 /// Which formulas a tracer uses.

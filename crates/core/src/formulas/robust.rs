@@ -1,14 +1,14 @@
 //! The formulas that keep their digits; those of the shapes stand beside the shapes.
 
 use super::{Family, LightPath};
-use crate::lane::{Lane, Scalar};
 use crate::ray::Ray;
 use crate::shapes::SurfacePoint;
 use crate::shapes::cylinder::{self, Cylinder};
 use crate::shapes::plane::Plane;
 use crate::shapes::sphere::{self, Sphere};
 use crate::shapes::triangle::{self, Triangle};
-use crate::vector::Vector;
+use crate::simd::lane::{Lane, Scalar};
+use crate::simd::vector::Vector;
 
 /// The family of [`Formulas::Robust`](super::Formulas::Robust).
 #[derive(Debug)]

@@ -1,14 +1,14 @@
 //! The formulas of the lab report, its slips mended: to see what they cost, and what they cost not.
 
 use super::{Family, LightPath};
-use crate::lane::{Lane, Mask};
 use crate::ray::{Ray, miss};
 use crate::shapes::SurfacePoint;
 use crate::shapes::cylinder::{self, Cylinder};
 use crate::shapes::plane::Plane;
 use crate::shapes::sphere::{self, Sphere};
 use crate::shapes::triangle::{self, Triangle};
-use crate::vector::Vector;
+use crate::simd::lane::{Lane, Mask};
+use crate::simd::vector::Vector;
 
 /// The family of [`Formulas::Textbook`](super::Formulas::Textbook).
 #[derive(Debug)]

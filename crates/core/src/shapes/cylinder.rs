@@ -1,11 +1,11 @@
 //! The open cylinder around a vertical axis: a circle in x and z, bounded in y.
 
 use super::{SurfacePoint, clearance, quadric};
-use crate::lane::{Lane, Mask, Scalar};
+use crate::accel::bvh::Bounds;
 use crate::ray::{Ray, miss};
 use crate::scene;
-use crate::tree::Bounds;
-use crate::vector::Vector;
+use crate::simd::lane::{Lane, Mask, Scalar};
+use crate::simd::vector::Vector;
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cylinder<S> {

@@ -8,11 +8,12 @@
 pub(crate) mod cylinder;
 pub(crate) mod plane;
 mod quadric;
+pub(crate) mod shape_list;
 pub(crate) mod sphere;
 pub(crate) mod triangle;
 
-use crate::lane::Lane;
-use crate::vector::Vector;
+use crate::simd::lane::Lane;
+use crate::simd::vector::Vector;
 
 /// By how many roundings of the largest coordinates whatever rules a shape out is larger than the
 /// shape. Hits are off by 31 at the most: of a sphere, 12 in each of the coordinates and the
@@ -59,6 +60,6 @@ impl<L: Lane> SurfacePoint<L> {
 /// Error": Pharr, Jakob, Humphreys, 2016); unlike a constant it follows the scene's scale.
 #[inline(always)]
 fn clearance<L: Lane>(normal: Vector<L>, point: Vector<L>, reach: Vector<L>) -> L {
-    use crate::lane::Scalar;
+    use crate::simd::lane::Scalar;
     normal.abs().dot(point.abs() + reach) * L::literal(12.0 * L::Scalar::ROUNDOFF)
 }

@@ -1,10 +1,10 @@
 //! The infinite plane.
 
 use super::{SurfacePoint, clearance};
-use crate::lane::{Lane, Scalar};
 use crate::ray::{Ray, miss};
 use crate::scene;
-use crate::vector::Vector;
+use crate::simd::lane::{Lane, Scalar};
+use crate::simd::vector::Vector;
 
 /// The points `p` with `normal . (p - point) = 0`.
 #[derive(Clone, Copy, Debug)]

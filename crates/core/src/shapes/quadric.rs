@@ -1,6 +1,6 @@
 //! The two roots where a ray meets a circle or a sphere.
 
-use crate::lane::Lane;
+use crate::simd::lane::Lane;
 
 /// The roots `near <= far`, valid where `discriminant >= 0`.
 ///

@@ -1,11 +1,11 @@
 //! The sphere.
 
 use super::{SurfacePoint, clearance, quadric};
-use crate::lane::{Lane, Mask, Scalar};
+use crate::accel::bvh::Bounds;
 use crate::ray::{Ray, miss};
 use crate::scene;
-use crate::tree::Bounds;
-use crate::vector::Vector;
+use crate::simd::lane::{Lane, Mask, Scalar};
+use crate::simd::vector::Vector;
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sphere<S> {

@@ -1,11 +1,11 @@
 //! The triangle, its edges included, without gaps to its neighbours.
 
 use super::{SurfacePoint, clearance};
-use crate::lane::{Lane, Mask, Scalar, sign_of_difference};
+use crate::accel::bvh::Bounds;
 use crate::ray::{AxisOrder, Ray, miss};
 use crate::scene;
-use crate::tree::Bounds;
-use crate::vector::Vector;
+use crate::simd::lane::{Lane, Mask, Scalar, sign_of_difference};
+use crate::simd::vector::Vector;
 use glam::DVec3;
 
 #[derive(Clone, Copy, Debug)]

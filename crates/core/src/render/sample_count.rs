@@ -41,7 +41,7 @@ pub(crate) fn lattice_points(pixels: u32, density: u32) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::antialiasing::Filter;
+    use crate::render::filter::Filter;
     use crate::scene::Sampling;
     use std::collections::BTreeSet;
 

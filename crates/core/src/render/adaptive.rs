@@ -4,9 +4,9 @@
 //! A point between two centres is decided by these two, one amid four centres by the four. So
 //! whoever computes it decides alike, whichever tile it is in.
 
-use crate::lane::Scalar;
-use crate::lattice::LatticeSums;
-use crate::samples::{Colors, Places, half_steps};
+use crate::render::lattice::LatticeSums;
+use crate::render::samples::{Colors, Places, half_steps};
+use crate::simd::lane::Scalar;
 
 /// The centres of a row of pixels and of one more on either side.
 #[derive(Clone, Debug)]

@@ -1,10 +1,10 @@
 //! The filter `exp(-(dx^2 + dy^2) / 0.64)` over the square out to one pixel from a pixel's centre,
 //! as a sum over samples. It is the product of the same function of each coordinate.
 
-use crate::lane::Scalar;
-use crate::samples::{Colors, Places};
+use crate::render::samples::{Colors, Places};
 use crate::scene::RenderSettings;
-use crate::vector::Vector;
+use crate::simd::lane::Scalar;
+use crate::simd::vector::Vector;
 use rayweave_contract::Rgb;
 
 /// The samples of a pixel, row by row: the same around every pixel's centre.

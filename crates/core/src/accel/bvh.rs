@@ -7,11 +7,11 @@
 //! the ray is longest, the box lies behind the ray or beyond what was found before; in this axis
 //! the `t` of every primitive is within its box.
 
-use crate::kind::Leaf;
-use crate::lane::{Lane, Mask, Scalar};
 use crate::ray::{Heading, Ray};
 use crate::shapes::MARGIN;
-use crate::vector::Vector;
+use crate::shapes::shape_list::Leaf;
+use crate::simd::lane::{Lane, Mask, Scalar};
+use crate::simd::vector::Vector;
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::{Bvh2, builder::build_bvh2};

@@ -1,8 +1,8 @@
 //! The filter over a lattice whose points neighbouring pixels share: each point's colour goes into
 //! every pixel that needs it, in the order in which a pixel alone would add it up.
 
-use crate::lane::Scalar;
-use crate::samples::Colors;
+use crate::render::samples::Colors;
+use crate::simd::lane::Scalar;
 use rayweave_contract::{Rgb, Tile};
 
 /// The rows of a lattice on their way into the pixels of a tile.

@@ -1,22 +1,22 @@
 //! All primitives of a scene, and the two questions a ray asks of them: what is nearest, and is
 //! anything in between.
 
-use crate::bundle::Bundle;
-use crate::enclosure::Enclosure;
+use crate::accel::bounding_sphere::Enclosure;
+use crate::accel::bvh::{Bounds, Tree};
+use crate::accel::cones::Bundle;
 use crate::execution::Search;
 use crate::formulas::{Aim, Family, LightPath};
-use crate::kind::{Kind, Leaf};
-use crate::lane::{Lane, Mask, Scalar};
 use crate::material::Light;
 use crate::ray::{AxisOrder, Ray, miss};
 use crate::scene::Scene;
 use crate::shapes::SurfacePoint;
 use crate::shapes::cylinder::{self, Cylinder};
 use crate::shapes::plane::Plane;
+use crate::shapes::shape_list::{Kind, Leaf};
 use crate::shapes::sphere::{self, Sphere};
 use crate::shapes::triangle::{self, Triangle};
-use crate::tree::{Bounds, Tree};
-use crate::vector::Vector;
+use crate::simd::lane::{Lane, Mask, Scalar};
+use crate::simd::vector::Vector;
 
 /// From so many bounded primitives on there is a tree: of 63 spheres that mirror each other each is
 /// tried in less time (METHODOLOGY.md), of a thousand a tree is far ahead.

@@ -1,15 +1,15 @@
 //! The tracer as [`Work`]: any tile of a scene's picture.
 
-use crate::adaptive::Bands;
-use crate::antialiasing::Filter;
 use crate::camera::Camera;
 use crate::execution::{Execution, Lanes};
 use crate::formulas::{Compiled, Family};
-use crate::lane::{Lane, Scalar};
-use crate::lattice::LatticeSums;
-use crate::sample_count::lattice_points;
-use crate::samples::{Colors, Places, half_steps};
+use crate::render::adaptive::Bands;
+use crate::render::filter::Filter;
+use crate::render::lattice::LatticeSums;
+use crate::render::sample_count::lattice_points;
+use crate::render::samples::{Colors, Places, half_steps};
 use crate::scene::{Scene, SceneError};
+use crate::simd::lane::{Lane, Scalar};
 use crate::trace::World;
 use rayweave_contract::{Rect, Tile, Work};
 use std::fmt;

@@ -7,10 +7,10 @@
 //! others may be apart from it. The cones are wider than the primitives by more than the errors of
 //! what is tried, so they change no picture, barring underflow.
 
-use crate::lane::{Lane, Mask, Scalar};
 use crate::scene::{self, Scene};
 use crate::shapes::MARGIN;
-use crate::vector::Vector;
+use crate::simd::lane::{Lane, Mask, Scalar};
+use crate::simd::vector::Vector;
 use glam::DVec3;
 
 /// A cone for each primitive that is not a plane: spheres, triangles, cylinders, each in file

@@ -1,8 +1,8 @@
 //! Lists of samples: where they lie, and what colour each has.
 
-use crate::lane::{Lane, Scalar};
+use crate::simd::lane::{Lane, Scalar};
+use crate::simd::vector::Vector;
 use crate::trace::Traced;
-use crate::vector::Vector;
 use std::iter::repeat_n;
 use std::ops::Range;
 

@@ -1,6 +1,6 @@
 //! Vectors of three numbers, each of them a [`Lane`].
 
-use crate::lane::{Lane, Scalar, product_error, sum_error};
+use crate::simd::lane::{Lane, Scalar, product_error, sum_error};
 use glam::DVec3;
 use std::ops::{Add, Mul, Neg, Sub};
 

@@ -4,7 +4,7 @@
 //! of one ray alone. Where the machine has no register of that width, `wide` uses several smaller
 //! ones.
 
-use crate::lane::{Lane, MIX, Mask};
+use crate::simd::lane::{Lane, MIX, Mask};
 use wide::{f32x8, f32x16, f64x4, f64x8, u32x8, u32x16, u64x4, u64x8};
 
 macro_rules! packet {

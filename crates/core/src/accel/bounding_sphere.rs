@@ -1,11 +1,11 @@
 //! Spheres around triangles: rays that come near none need not be sorted by axis, which trying a
 //! triangle takes.
 
-use crate::lane::{Lane, Scalar};
 use crate::ray::Ray;
 use crate::scene;
 use crate::shapes::MARGIN;
-use crate::vector::Vector;
+use crate::simd::lane::{Lane, Scalar};
+use crate::simd::vector::Vector;
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Enclosure<S> {

@@ -1,0 +1,8 @@
+//! Acceleration: finds the primitives that a ray may hit, and skips those that it cannot.
+
+pub(crate) mod behind_culling;
+pub(crate) mod bounding_sphere;
+pub(crate) mod bvh;
+pub(crate) mod cones;
+pub(crate) mod plane_culling;
+pub(crate) mod primitives;
