@@ -83,8 +83,13 @@ fn bench_rays(
     for &formulas in formulas {
         for precision in [Precision::F32, Precision::F64] {
             let arithmetic = Arithmetic { formulas, precision };
-            let execution = Execution { search, ..arithmetic.into() };
-            bench_lanes(&mut group, &format!("{formulas}/{precision}"), probe, execution);
+            let execution = Execution { search, ..Execution::default() };
+            bench_lanes(
+                &mut group,
+                &format!("{formulas}/{precision}"),
+                probe,
+                (arithmetic, execution),
+            );
         }
     }
     group.finish();
@@ -107,8 +112,8 @@ fn filter(criterion: &mut Criterion) {
         let scene = Scene { render, ..room.clone() };
         let probe = Probe::whole(scene, 64, 32);
         group.throughput(Throughput::Elements(probe.pixels()));
-        let execution = Execution { share_samples, ..Precision::F32.into() };
-        bench_lanes(&mut group, name, &probe, execution);
+        let execution = Execution { share_samples, ..Execution::default() };
+        bench_lanes(&mut group, name, &probe, (Precision::F32.into(), execution));
     }
     group.finish();
 }
@@ -126,18 +131,19 @@ fn bench_lanes(
     group: &mut BenchmarkGroup<'_, WallTime>,
     name: &str,
     probe: &Probe,
-    execution: Execution,
+    (arithmetic, execution): (Arithmetic, Execution),
 ) {
     let mut expected = None;
     for lanes in Lanes::ALL {
-        let count = lanes.count(execution.arithmetic.precision);
+        let count = lanes.count(arithmetic.precision);
         let lanes_name = format!("{count} {}", if count == 1 { "lane" } else { "lanes" });
         let mut image = probe.image();
         let mut tiles = probe.tiles(&mut image);
         // Made when it is needed first: a filter may have left the bench out.
         let mut work = None;
         group.bench_function(BenchmarkId::new(name, lanes_name), |bencher| {
-            let work = work.get_or_insert_with(|| probe.work(Execution { lanes, ..execution }));
+            let work = work
+                .get_or_insert_with(|| probe.work(arithmetic, Execution { lanes, ..execution }));
             bencher.iter(|| tiles.iter_mut().for_each(|tile| work.render(tile)));
         });
         // What was timed is looked at, outside of the timing: the lanes may not change a bit of it.

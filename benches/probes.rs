@@ -5,7 +5,7 @@ use rayweave_contract::{Image, Tile, Work};
 use rayweave_core::scene::{
     Camera, Cylinder, Light, Material, Plane, RenderSettings, Sphere, Triangle,
 };
-use rayweave_core::{Execution, Precision, Scene, tracer};
+use rayweave_core::{Arithmetic, Execution, Precision, Scene, tracer};
 use rayweave_measure::random::SplitMix64;
 use std::f64::consts::PI;
 use std::num::NonZeroU32;
@@ -138,14 +138,15 @@ impl Probe {
         Self::whole(scene(8.0, 1.0, rays), 64, 32)
     }
 
-    /// The work of rendering it.
+    /// The work of rendering it in this arithmetic.
     ///
     /// # Panics
     ///
     /// The scene is not sound.
     #[must_use]
-    pub fn work(&self, execution: impl Into<Execution>) -> Box<dyn Work + Send> {
-        tracer(&self.scene, self.width, self.height, execution).unwrap_or_else(|e| panic!("{e}"))
+    pub fn work(&self, arithmetic: Arithmetic, execution: Execution) -> Box<dyn Work + Send> {
+        let scene = self.scene.with_arithmetic(arithmetic);
+        tracer(&scene, self.width, self.height, execution).unwrap_or_else(|e| panic!("{e}"))
     }
 
     /// A picture for it, without a number in it.
@@ -176,7 +177,7 @@ impl Probe {
     /// count them.
     #[must_use]
     pub fn hits(&self) -> u64 {
-        let work = self.work(Precision::F32);
+        let work = self.work(Precision::F32.into(), Execution::default());
         let mut image = self.image();
         self.tiles(&mut image).iter_mut().for_each(|tile| work.render(tile));
         // What is not rendered is NaN, what is not hit is black.

@@ -163,7 +163,13 @@ impl Placed {
         // The corners that the kernel has are aimed at, to the last bit.
         let scene = if precision == Precision::F32 { rounded(&scene) } else { scene };
         let triangles = scene.triangles.iter().map(|triangle| triangle.vertices).collect();
-        Ok(Self { caster: Caster::new(&scene, precision)?, precision, triangles, size, middle })
+        Ok(Self {
+            caster: Caster::new(&scene.with_arithmetic(precision))?,
+            precision,
+            triangles,
+            size,
+            middle,
+        })
     }
 
     /// From within 5/8 of the middle to a corner or a point of an edge.

@@ -1,20 +1,20 @@
 //! Pictures without any strategy: whatever is true of them is true of the work alone.
 
 use rayweave_contract::{Image, Rgb, Tile, Work};
-use rayweave_core::{Arithmetic, Execution, Lanes, Precision, Scene, Search, tracer};
+use rayweave_core::{Execution, Lanes, Precision, Scene, Search, tracer};
 use std::num::NonZeroU32;
 
 /// The execution that has nothing of the others': each ray for itself, and against each primitive.
 #[must_use]
-pub fn plain(arithmetic: impl Into<Arithmetic>) -> Execution {
+pub fn plain() -> Execution {
     let (lanes, search) = (Lanes::One, Search::Exhaustive);
-    Execution { arithmetic: arithmetic.into(), lanes, share_samples: false, search }
+    Execution { lanes, share_samples: false, search }
 }
 
-/// Every execution in one arithmetic; the first is the plain one.
+/// Every execution; the first is the plain one.
 #[must_use]
-pub fn executions(arithmetic: impl Into<Arithmetic>) -> Vec<Execution> {
-    let plain = plain(arithmetic);
+pub fn executions() -> Vec<Execution> {
+    let plain = plain();
     let searches = [plain, Execution { search: Search::Auto, ..plain }];
     let shared = searches
         .into_iter()
@@ -68,13 +68,14 @@ pub fn pixel_by_pixel(work: &dyn Work, width: u32, height: u32) -> Image {
     picture
 }
 
-/// The picture of `scene`.
+/// The picture of `scene` with the robust formulas in this precision.
 ///
 /// # Panics
 ///
 /// If the scene is not sound, or a picture of that size cannot be.
 #[must_use]
 pub fn of_scene(scene: &Scene, width: u32, height: u32, precision: Precision) -> Image {
-    let work = tracer(scene, width, height, precision).expect("a sound scene");
+    let work = tracer(&scene.with_arithmetic(precision), width, height, Execution::default())
+        .expect("a sound scene");
     pixel_by_pixel(&*work, width, height)
 }

@@ -28,7 +28,7 @@ impl Prepared {
     pub fn new(case: &Case, arithmetic: Arithmetic) -> Self {
         Self {
             id: case.id.clone(),
-            caster: Caster::new(&scene_of(&case.primitive), arithmetic).ok(),
+            caster: Caster::new(&scene_of(&case.primitive).with_arithmetic(arithmetic)).ok(),
             origin: vector(case.ray.origin),
             direction: vector(case.ray.direction),
             precision: arithmetic.precision,

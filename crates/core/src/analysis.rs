@@ -1,7 +1,7 @@
 //! What a scene needs: found out once, before it is rendered.
 
 use crate::execution::{Execution, Search};
-use crate::formulas::{Compiled, Family};
+use crate::formulas::{Compiled, Family, select};
 use crate::scene::{Scene, SceneError};
 use crate::simd::lane::Scalar;
 use crate::trace::World;
@@ -48,7 +48,7 @@ impl Analysis {
     /// A scene that [`Scene::check`] rejects.
     pub fn of(scene: &Scene, execution: &Execution) -> Result<Self, SceneError> {
         scene.check()?;
-        Ok(execution.arithmetic.select(Looked { scene, search: execution.search }))
+        Ok(select(scene.render.arithmetic, Looked { scene, search: execution.search }))
     }
 }
 
@@ -65,7 +65,7 @@ impl Compiled for Looked<'_> {
         let scene = self.scene;
         let world = World::<S, F>::new(scene, Some(scene.camera.position), self.search);
         let hiding_planes: Vec<usize> =
-            world.lights.iter().map(|light| light.planes.len()).collect();
+            world.lights.iter().map(|light| light.occluders.planes.len()).collect();
         let primitives =
             [scene.planes.len(), scene.spheres.len(), scene.triangles.len(), scene.cylinders.len()];
         Analysis {
@@ -118,8 +118,8 @@ impl fmt::Display for Analysis {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::precision::Precision;
     use crate::scene::{Camera, Light, Material, Plane, RenderSettings, Sphere};
+    use crate::settings::Precision;
     use glam::DVec3;
 
     /// A floor, spheres on it, a light above, one below and one without power.
@@ -136,7 +136,10 @@ mod tests {
                 focal_length: 1.0,
                 screen_width: 1.0,
             },
-            render: RenderSettings::default(),
+            render: RenderSettings {
+                arithmetic: Precision::F32.into(),
+                ..RenderSettings::default()
+            },
             materials: vec![Material { reflection, ..Material::new(DVec3::ONE) }],
             lights: vec![light(5.0, 1.0), light(-5.0, 1.0), light(5.0, 0.0)],
             planes: vec![Plane { point: DVec3::ZERO, normal: DVec3::Y, material: 0 }],
@@ -147,7 +150,7 @@ mod tests {
     }
 
     fn analysis(spheres: usize, reflection: f64, search: Search) -> Analysis {
-        let execution = Execution { search, ..Execution::from(Precision::F32) };
+        let execution = Execution { search, ..Execution::default() };
         Analysis::of(&scene(spheres, reflection), &execution).expect("a sound scene")
     }
 
@@ -173,7 +176,7 @@ mod tests {
             let mut scene = scene(3, reflection);
             scene.lights[0].position.z = light_z;
             scene.spheres[1].center.z = 10.0;
-            let execution = Execution { search, ..Execution::from(Precision::F32) };
+            let execution = Execution { search, ..Execution::default() };
             Analysis::of(&scene, &execution).expect("a sound scene").behind
         };
         assert_eq!(behind(0.0, 9.0, Search::Auto), 1);

@@ -1,7 +1,7 @@
 //! Single rays through the kernel that renders, for tests and for whoever studies it.
 
 use crate::execution::Search;
-use crate::formulas::{Arithmetic, Compiled, Family};
+use crate::formulas::{Compiled, Family, select};
 use crate::ray::Ray;
 use crate::scene::{Scene, SceneError, near_one};
 use crate::simd::lane::Scalar;
@@ -22,24 +22,24 @@ pub struct Hit {
     pub normal: DVec3,
 }
 
-/// A scene ready for single rays in one arithmetic.
+/// A scene ready for single rays.
 pub struct Caster(Box<dyn Cast + Send + Sync>);
 
 impl Caster {
-    /// Of `scene`, all of whose numbers are rounded to the precision.
+    /// Prepares `scene` in its own arithmetic: all its numbers are rounded to the precision.
     ///
     /// # Errors
     ///
     /// A scene that [`Scene::check`] rejects.
-    pub fn new(scene: &Scene, arithmetic: impl Into<Arithmetic>) -> Result<Self, SceneError> {
+    pub fn new(scene: &Scene) -> Result<Self, SceneError> {
         scene.check()?;
-        Ok(Self::of(scene, arithmetic.into()))
+        Ok(Self::of(scene))
     }
 
     /// Not generic, so that all that is compiled for it is compiled in this crate, and in none that
     /// uses it.
-    fn of(scene: &Scene, arithmetic: Arithmetic) -> Self {
-        Self(arithmetic.select(scene))
+    fn of(scene: &Scene) -> Self {
+        Self(select(scene.render.arithmetic, scene))
     }
 
     /// The nearest hit of the ray from `origin` in `direction`, which may have any length but 0.

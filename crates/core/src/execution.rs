@@ -1,19 +1,22 @@
-//! How a picture is computed: with which arithmetic, and by which ways that give the same bits.
+//! The settings of a rendering that never change the image: packets, sharing, acceleration.
 
-use crate::formulas::Arithmetic;
-use crate::precision::Precision;
+use crate::precision::{Demand, F32_MIRRORS};
+use crate::settings::Precision;
 
-/// How a picture is computed. Only the arithmetic changes its bits.
+/// The settings that never change a bit of the image, only the time that it takes.
+///
+/// The settings that change the image are in [`RenderSettings`](crate::scene::RenderSettings). The
+/// tile size never changes it either, but it belongs to the strategy: the tracer fills any tile.
+///
+/// The default is the fastest for most scenes: full packets, shared samples, acceleration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Execution {
-    /// Formulas and number type.
-    pub arithmetic: Arithmetic,
-    /// Rays side by side.
+    /// The number of rays that are followed side by side.
     pub lanes: Lanes,
-    /// Whether a lattice point that several pixels of a tile need is traced once; of adaptive
-    /// samples it always is.
+    /// Traces a lattice point once for all pixels of a tile that need it. Adaptive samples are
+    /// always shared.
     pub share_samples: bool,
-    /// Whether a ray tries what it cannot meet.
+    /// The primitives that a ray tries.
     pub search: Search,
 }
 
@@ -30,10 +33,10 @@ pub enum Search {
     Exhaustive,
 }
 
-/// How many rays are followed side by side, as a packet.
+/// The number of rays that are followed side by side, as a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lanes {
-    /// One.
+    /// One ray.
     One,
     /// As many as fill 256 bits: 8 in `f32`, 4 in `f64`.
     Wide256,
@@ -41,8 +44,14 @@ pub enum Lanes {
     Wide512,
 }
 
-/// As many as fill a register of the machine that the program is built for; 256 bits if it is
-/// smaller.
+impl Default for Execution {
+    fn default() -> Self {
+        Self { lanes: Lanes::default(), share_samples: true, search: Search::default() }
+    }
+}
+
+/// As many lanes as fill a register of the machine that the program is built for, but at least 256
+/// bits.
 impl Default for Lanes {
     fn default() -> Self {
         if cfg!(target_feature = "avx512f") { Self::Wide512 } else { Self::Wide256 }
@@ -50,10 +59,10 @@ impl Default for Lanes {
 }
 
 impl Lanes {
-    /// Each width there is.
+    /// All widths.
     pub const ALL: [Self; 3] = [Self::One, Self::Wide256, Self::Wide512];
 
-    /// The number of rays in this precision.
+    /// Returns the number of rays in this precision.
     #[must_use]
     pub fn count(self, precision: Precision) -> usize {
         match (self, precision) {
@@ -63,16 +72,14 @@ impl Lanes {
             (Self::Wide512, Precision::F32) => 16,
         }
     }
-}
 
-/// The fastest execution in this arithmetic: packets, and samples shared.
-impl<A: Into<Arithmetic>> From<A> for Execution {
-    fn from(arithmetic: A) -> Self {
-        Self {
-            arithmetic: arithmetic.into(),
-            lanes: Lanes::default(),
-            share_samples: true,
-            search: Search::default(),
-        }
+    /// Returns the width that is likely the fastest for the scene of this estimate.
+    ///
+    /// The rays of neighbouring pixels diverge between curved mirrors as fast as errors grow there.
+    /// Where that is too much for `f32`, the rays of a packet soon have nothing in common, so each
+    /// ray is followed alone.
+    #[must_use]
+    pub fn suggested(estimate: &Demand) -> Self {
+        if estimate.mirrors <= F32_MIRRORS { Self::default() } else { Self::One }
     }
 }

@@ -1,7 +1,7 @@
 //! Surfaces and lights in the precision of the picture, and Phong's model of how one answers the
 //! other (Bui Tuong Phong, Illumination for Computer Generated Pictures, 1975).
 
-use crate::accel::cones::Bundle;
+use crate::accel::occluders::Occluders;
 use crate::scene;
 use crate::simd::lane::{Lane, Scalar};
 use crate::simd::vector::Vector;
@@ -23,10 +23,8 @@ pub(crate) struct Light<S> {
     pub(crate) reach: S,
     /// Colour times power.
     pub(crate) intensity: Vector<S>,
-    /// The planes that may hide it.
-    pub(crate) planes: Vec<u32>,
-    /// What the shadow rays to it may meet; else anything.
-    pub(crate) bundle: Option<Bundle<S>>,
+    /// The primitives that may hide it.
+    pub(crate) occluders: Occluders<S>,
 }
 
 impl<S: Scalar> Material<S> {
@@ -43,14 +41,13 @@ impl<S: Scalar> Material<S> {
 }
 
 impl<S: Scalar> Light<S> {
-    pub(crate) fn new(light: &scene::Light, planes: Vec<u32>, bundle: Option<Bundle<S>>) -> Self {
+    pub(crate) fn new(light: &scene::Light, occluders: Occluders<S>) -> Self {
         let position = Vector::rounded(light.position);
         Self {
             position,
             reach: position.sum_of_magnitudes(),
             intensity: Vector::rounded(light.color * light.power),
-            planes,
-            bundle,
+            occluders,
         }
     }
 }

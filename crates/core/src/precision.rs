@@ -1,18 +1,9 @@
 //! How many digits a scene needs.
 
-use crate::execution::Lanes;
 use crate::scene::{Cylinder, Plane, Scene, Sphere, Triangle, near_one, unit};
+use crate::settings::Precision;
 use glam::DVec3;
 use std::fmt;
-
-/// The number type that a picture is computed in; pictures are kept as `f32` in any case.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Precision {
-    /// 24 binary digits.
-    F32,
-    /// 53 binary digits.
-    F64,
-}
 
 /// What a scene asks of a number type.
 ///
@@ -108,14 +99,6 @@ impl Demand {
         self.extreme <= F32_RANGE.end && self.least >= F32_RANGE.start
     }
 
-    /// How many rays to follow side by side: rays of neighbours part as errors grow, and where they
-    /// part too far between curved mirrors for `f32`, a packet soon holds rays that have nothing in
-    /// common.
-    #[must_use]
-    pub fn lanes(&self) -> Lanes {
-        if self.mirrors <= F32_MIRRORS { Lanes::default() } else { Lanes::One }
-    }
-
     /// The cheapest number type whose error a picture in 8 bits does not show.
     #[must_use]
     pub fn precision(&self) -> Precision {
@@ -207,14 +190,5 @@ impl fmt::Display for Demand {
                 "f32 is off by up to {displacement:.1e} of the picture's width (allowed: {allowed:.1e})"
             )
         }
-    }
-}
-
-impl fmt::Display for Precision {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::F32 => "f32",
-            Self::F64 => "f64",
-        })
     }
 }

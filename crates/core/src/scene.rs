@@ -5,16 +5,19 @@
 //! says whether they mean something. The rules live here, and here only: a reader of scene files
 //! adds to a [`Fault`] where in the file it stands.
 
+pub use crate::fault::{Fault, SceneError};
+pub use crate::settings::{MAX_ANTIALIASING, MAX_REFLECTIONS, RenderSettings, Sampling};
+
+use crate::fault::{check_all, color, expect, finite, locate, not_negative, positive};
+use crate::settings::Arithmetic;
 use glam::DVec3;
-use std::fmt;
-use thiserror::Error;
 
 /// A whole scene: everything that decides the picture, except its size in pixels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     /// Where the picture is seen from.
     pub camera: Camera,
-    /// How the rays are followed and sampled.
+    /// The settings that change the image.
     pub render: RenderSettings,
     /// Point lights, in file order.
     pub lights: Vec<Light>,
@@ -43,56 +46,6 @@ pub struct Camera {
     pub focal_length: f64,
     /// Full width of the screen, above 0. Its height follows from the picture's proportions.
     pub screen_width: f64,
-}
-
-/// The knobs of a rendering that a scene states and the command line may override.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RenderSettings {
-    /// The colour of a ray that hits nothing.
-    pub background: DVec3,
-    /// Mirror bounces after the primary ray, 0..=64.
-    pub max_reflections: u32,
-    /// Density `s`: 0 for one ray a pixel, else 1..=32; see [`Sampling`].
-    pub antialiasing: u32,
-    /// Where in and around a pixel these samples lie.
-    pub sampling: Sampling,
-    /// Whether lattice points between pixel centres are traced only where those centres differ: in
-    /// what is hit, which lights it sees, or the same of what it mirrors. Elsewhere they are
-    /// interpolated. Of no effect on other samples than the lattice's.
-    pub adaptive: bool,
-}
-
-/// Where the samples of a pixel lie. Both patterns are the same for every pixel, and tend to the
-/// integral of the filter over the picture as their number grows.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Sampling {
-    /// `(2 s + 1)^2` on a square lattice, weighted by the filter: what a scene file means.
-    #[default]
-    Lattice,
-    /// `s^2 + (s + 1)^2` of equal weight, as dense as the filter is high: half of the
-    /// lattice's rays for about the same error.
-    Importance,
-}
-
-impl fmt::Display for Sampling {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Lattice => "lattice",
-            Self::Importance => "importance",
-        })
-    }
-}
-
-impl Default for RenderSettings {
-    fn default() -> Self {
-        Self {
-            background: DVec3::ZERO,
-            max_reflections: 4,
-            antialiasing: 2,
-            sampling: Sampling::Lattice,
-            adaptive: false,
-        }
-    }
 }
 
 /// A point light without fall-off.
@@ -175,36 +128,18 @@ pub struct Cylinder {
     pub material: usize,
 }
 
-/// One thing in a scene that means nothing: which key, what was expected, what was found.
-#[derive(Clone, Debug, Error, PartialEq)]
-#[error("`{key}` must be {expected}, but is {found}")]
-pub struct Fault {
-    /// The key at fault, as a scene file spells it: `radius`.
-    pub key: &'static str,
-    /// What would be right: `a number above 0`.
-    pub expected: &'static str,
-    /// What is there: `-1`.
-    pub found: String,
-}
-
-/// A [`Fault`] and the entry it belongs to.
-#[derive(Clone, Debug, Error, PartialEq)]
-#[error("{entry}: {fault}")]
-pub struct SceneError {
-    /// The entry, counted from 0 within its kind: `sphere[2]`.
-    pub entry: String,
-    /// What is wrong with it.
-    pub fault: Fault,
-}
-
-/// The largest value of [`RenderSettings::max_reflections`].
-pub const MAX_REFLECTIONS: u32 = 64;
-/// The largest value of [`RenderSettings::antialiasing`].
-pub const MAX_ANTIALIASING: u32 = 32;
 /// The largest value of [`Material::shininess`].
 pub const MAX_SHININESS: u32 = 1024;
 
 impl Scene {
+    /// Returns a copy that is rendered in this arithmetic.
+    #[must_use]
+    pub fn with_arithmetic(&self, arithmetic: impl Into<Arithmetic>) -> Self {
+        let mut scene = self.clone();
+        scene.render.arithmetic = arithmetic.into();
+        scene
+    }
+
     /// Whether every entry obeys the model, each on its own and in its reference to a material.
     ///
     /// # Errors
@@ -244,42 +179,6 @@ impl Camera {
         expect("up", self.up != DVec3::ZERO, "a vector other than zero", self.up)?;
         let beside = !parallel(self.look_at - self.position, self.up);
         expect("up", beside, "a direction not parallel to the view", self.up)
-    }
-}
-
-impl RenderSettings {
-    /// Whether samples lie on a lattice, whose points neighbouring pixels have in common.
-    #[must_use]
-    pub fn has_lattice(&self) -> bool {
-        self.antialiasing > 0 && self.sampling == Sampling::Lattice
-    }
-
-    /// Primary rays a pixel, when each pixel traces its own.
-    #[must_use]
-    pub fn rays_per_pixel(&self) -> u32 {
-        match (self.antialiasing, self.sampling) {
-            (0, _) => 1,
-            (density, Sampling::Lattice) => (2 * density + 1).pow(2),
-            (density, Sampling::Importance) => density.pow(2) + (density + 1).pow(2),
-        }
-    }
-
-    /// Whether the settings are within the model's limits.
-    ///
-    /// # Errors
-    ///
-    /// The first key that breaks a rule.
-    pub fn check(&self) -> Result<(), Fault> {
-        color("background", self.background)?;
-        let reflections = self.max_reflections;
-        expect(
-            "max_reflections",
-            reflections <= MAX_REFLECTIONS,
-            "an integer in 0..=64",
-            reflections,
-        )?;
-        let density = self.antialiasing;
-        expect("antialiasing", density <= MAX_ANTIALIASING, "an integer in 0..=32", density)
     }
 }
 
@@ -381,47 +280,6 @@ impl Cylinder {
         expect("top", upright, "a point with the x and z of `bottom`", self.top)?;
         expect("top", self.top.y > self.bottom.y, "a point above `bottom`", self.top)
     }
-}
-
-fn check_all<T>(
-    kind: &str,
-    entries: &[T],
-    check: impl Fn(&T) -> Result<(), Fault>,
-) -> Result<(), SceneError> {
-    entries
-        .iter()
-        .enumerate()
-        .try_for_each(|(i, entry)| locate(format!("{kind}[{i}]"), check(entry)))
-}
-
-fn locate(entry: impl Into<String>, result: Result<(), Fault>) -> Result<(), SceneError> {
-    result.map_err(|fault| SceneError { entry: entry.into(), fault })
-}
-
-fn expect(
-    key: &'static str,
-    holds: bool,
-    expected: &'static str,
-    found: impl fmt::Display,
-) -> Result<(), Fault> {
-    if holds { Ok(()) } else { Err(Fault { key, expected, found: found.to_string() }) }
-}
-
-fn finite(key: &'static str, v: DVec3) -> Result<(), Fault> {
-    expect(key, v.is_finite(), "finite numbers", v)
-}
-
-fn positive(key: &'static str, x: f64) -> Result<(), Fault> {
-    expect(key, x.is_finite() && x > 0.0, "a finite number above 0", x)
-}
-
-fn not_negative(key: &'static str, x: f64) -> Result<(), Fault> {
-    expect(key, x.is_finite() && x >= 0.0, "a finite number of 0 or more", x)
-}
-
-fn color(key: &'static str, c: DVec3) -> Result<(), Fault> {
-    let shares = c.to_array().iter().all(|share| (0.0..=1.0).contains(share));
-    expect(key, shares, "three numbers in 0..=1", c)
 }
 
 /// `v` scaled so that its largest component is near 1, by a power of two: exactly.

@@ -3,6 +3,7 @@
 
 use crate::accel::behind_culling::in_front;
 use crate::accel::cones::Bundle;
+use crate::accel::occluders::Occluders;
 use crate::accel::plane_culling::hiding_planes;
 use crate::accel::primitives::{Hit, Primitives};
 use crate::execution::Search;
@@ -69,7 +70,7 @@ impl<S: Scalar, F: Family> World<S, F> {
         let shining = scene.lights.iter().filter(|light| light.color * light.power != DVec3::ZERO);
         let lights = shining.filter_map(|light| {
             let planes = hiding_planes(scene, light.position, confined, S::ROUNDOFF)?;
-            Some(Light::new(light, planes, bundle(light.position)))
+            Some(Light::new(light, Occluders { planes, cones: bundle(light.position) }))
         });
         let mirrored_eye = |plane: &Plane| {
             let mirror = scene.materials[plane.material].reflection > 0.0;
@@ -210,8 +211,14 @@ impl<S: Scalar, F: Family> World<S, F> {
             let reach = start_reach + L::splat(light.reach);
             let path = LightPath { start, toward, to_light, distance, inverse_distance, reach };
             let (shadow_ray, limit) = F::shadow_ray(&path);
-            let lit =
-                above & !self.primitives.blocked::<L, F>(&shadow_ray, limit, above, &path, light);
+            let lit = above
+                & !self.primitives.blocked::<L, F>(
+                    &shadow_ray,
+                    limit,
+                    above,
+                    &path,
+                    &light.occluders,
+                );
             if !lit.any() {
                 continue;
             }

@@ -4,7 +4,7 @@ use crate::options::{PrecisionOption, SceneOptions, SwitchOption};
 use rayweave_contract::{Image, ImageError, Work};
 use rayweave_core::precision::Demand;
 use rayweave_core::scene::RenderSettings;
-use rayweave_core::{Arithmetic, Execution, Precision, Sampling, Scene, tracer};
+use rayweave_core::{Arithmetic, Execution, Lanes, Precision, Sampling, Scene, tracer};
 use rayweave_scene_file::{self as scene_file, SceneFile};
 use std::path::Path;
 
@@ -78,9 +78,9 @@ impl Input {
             PrecisionOption::F32 => (Precision::F32, "as asked for".to_owned()),
             PrecisionOption::F64 => (Precision::F64, "as asked for".to_owned()),
         };
-        let arithmetic = Arithmetic { formulas: options.formulas.into(), precision };
-        let (lanes, search) = (options.lanes.or(demand.lanes()), options.search.into());
-        let execution = Execution { arithmetic, lanes, share_samples, search };
+        scene.render.arithmetic = Arithmetic { formulas: options.formulas.into(), precision };
+        let (lanes, search) = (options.lanes.or(Lanes::suggested(&demand)), options.search.into());
+        let execution = Execution { lanes, share_samples, search };
         let skipped_triangles = file.skipped_triangles;
         Ok(Self { name, scene, width, height, execution, reason, skipped_triangles })
     }
@@ -136,7 +136,7 @@ impl Input {
 
     /// Formulas, precision and its reason.
     pub fn arithmetic_line(&self) -> String {
-        let Arithmetic { formulas, precision } = self.execution.arithmetic;
+        let Arithmetic { formulas, precision } = self.scene.render.arithmetic;
         format!("arithmetic: {formulas} formulas in {precision}; {}", self.reason)
     }
 }

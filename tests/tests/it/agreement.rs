@@ -2,7 +2,7 @@
 //! that neither was written for.
 
 use rayweave_contract::{Image, Plan};
-use rayweave_core::{Precision, Scene, tracer};
+use rayweave_core::{Execution, Precision, Scene, tracer};
 use rayweave_tests::{metrics, model, random_scene::random_scene};
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::path::Path;
@@ -11,7 +11,8 @@ const WIDTH: u32 = 96;
 const HEIGHT: u32 = 72;
 
 fn render(scene: &Scene, precision: Precision) -> Image {
-    let work = tracer(scene, WIDTH, HEIGHT, precision).expect("a sound scene");
+    let work = tracer(&scene.with_arithmetic(precision), WIDTH, HEIGHT, Execution::default())
+        .expect("a sound scene");
     let mut picture = Image::new(WIDTH, HEIGHT).expect("a small picture");
     let plan = Plan { threads: NonZeroUsize::MIN, tile: NonZeroU32::new(16).expect("not 0") };
     let mut renderer = rayweave_registry::recommended().prepare(plan).expect("one thread");

@@ -19,7 +19,7 @@ fn rims_and_outlines_belong_to_a_cylinder() {
         Cylinder { bottom: v(0.0, -1.0, -2.0), top: v(0.0, 1.0, -2.0), radius: 1.0, material: 0 };
     let scene = Scene { cylinders: vec![tube], ..empty() };
     for precision in PRECISIONS {
-        let caster = Caster::new(&scene, precision).expect("a sound scene");
+        let caster = Caster::new(&scene.with_arithmetic(precision)).expect("a sound scene");
         let t = |x: f64, y: f64| caster.nearest_hit(v(x, y, 0.0), -DVec3::Z).map(|hit| hit.t);
         assert_eq!((t(0.0, -1.0), t(0.0, 1.0)), (Some(1.0), Some(1.0)), "{precision}");
         assert_eq!((t(1.0, 0.0), t(-1.0, 0.0)), (Some(2.0), Some(2.0)), "{precision}");
@@ -32,7 +32,7 @@ fn dark_pixels(scene: &Scene, near: DVec3, normal: DVec3) -> usize {
     let mut scene = scene.clone();
     scene.lights.truncate(1);
     scene.lights[0].position = near + 40.0 * normal;
-    let caster = Caster::new(&scene, Precision::F32).expect("a sound scene");
+    let caster = Caster::new(&scene.with_arithmetic(Precision::F32)).expect("a sound scene");
     let offsets =
         (0..400).map(|i| v(f64::from(i % 20) / 20.0 - 0.5, -1.0, f64::from(i / 20) / 20.0 - 0.5));
     let sums: Vec<f64> =
@@ -77,8 +77,8 @@ fn a_surface_through_a_light_does_not_hide_it() {
         Scene { triangles: vec![Triangle { vertices: corners, material: 0 }], ..open.clone() },
     ];
     for (scene, precision) in walls.iter().flat_map(|scene| PRECISIONS.map(|p| (scene, p))) {
-        let caster = Caster::new(scene, precision).expect("a sound scene");
-        let free = Caster::new(&open, precision).expect("a sound scene");
+        let caster = Caster::new(&scene.with_arithmetic(precision)).expect("a sound scene");
+        let free = Caster::new(&open.with_arithmetic(precision)).expect("a sound scene");
         for i in 0..900 {
             let d = v(f64::from(i % 30) / 15.0 - 1.0, -1.0, f64::from(i / 30) / 15.0 - 1.0);
             let eye = v(0.3, -1.7, 0.2);

@@ -111,7 +111,9 @@ fn the_tracer_s_rays_hit_where_they_should() {
         let what = format!("{} in {precision}: {}", witness.name, witness.report);
         let scene = alone(witness.primitive);
         let (origin, direction) = (witness.ray.origin, witness.ray.direction);
-        let found = Caster::new(&scene, precision).expect(&what).nearest_hit(origin, direction);
+        let found = Caster::new(&scene.with_arithmetic(precision))
+            .expect(&what)
+            .nearest_hit(origin, direction);
         let (Some(hit), Some(expected)) = (found, witness.expected) else {
             assert_eq!(found.is_some(), witness.expected.is_some(), "{what}: {found:?}");
             continue;
@@ -138,8 +140,9 @@ fn the_tracer_s_colours_are_as_they_should() {
         let expected = DVec3::from_array(witness.expected);
         let camera = witness.scene.camera;
         let view = camera.look_at - camera.position;
-        let seen =
-            Caster::new(&witness.scene, precision).expect(&what).color(camera.position, view);
+        let seen = Caster::new(&witness.scene.with_arithmetic(precision))
+            .expect(&what)
+            .color(camera.position, view);
         assert!(
             DVec3::from_array(seen).distance(expected) < tolerance(precision),
             "{what}: {seen:?}"

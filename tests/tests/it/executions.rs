@@ -21,8 +21,9 @@ const TILES: [u32; 3] = [1000, 7, 1];
 
 /// Every execution in every cut gives the bits of the plain one, pixel by pixel.
 fn executions_agree(scene: &Scene, size: (u32, u32), arithmetic: Arithmetic, name: &str) {
-    let right = in_tiles(scene, size, plain(arithmetic), 1);
-    for execution in executions(arithmetic) {
+    let scene = &scene.with_arithmetic(arithmetic);
+    let right = in_tiles(scene, size, plain(), 1);
+    for execution in executions() {
         for tile in TILES {
             let found = in_tiles(scene, size, execution, tile);
             if let Some(difference) = difference(&found, &right) {
@@ -87,10 +88,9 @@ fn adaptive_samples() {
 /// at all.
 #[test]
 fn adaptive_samples_are_near_the_lattice() {
-    let mut scene = scenes::named("room");
+    let mut scene = scenes::named("room").with_arithmetic(ARITHMETICS[0]);
     scene.render.antialiasing = 4;
-    let execution = plain(ARITHMETICS[0]);
-    let execution = Execution { lanes: Lanes::default(), share_samples: true, ..execution };
+    let execution = Execution { lanes: Lanes::default(), share_samples: true, ..plain() };
     let full = in_tiles(&scene, (200, 200), execution, 64);
     scene.render.adaptive = true;
     let found = in_tiles(&scene, (200, 200), execution, 64);
@@ -148,14 +148,11 @@ fn many_samples_a_pixel() {
 /// Catches a test that compares an execution with itself.
 #[test]
 fn the_executions_are_all_there() {
-    for arithmetic in ARITHMETICS {
-        let all = executions(arithmetic);
-        assert_eq!(all[0], plain(arithmetic));
-        assert_eq!(all.len(), 12);
-        for (i, execution) in all.iter().enumerate() {
-            assert!(!all[..i].contains(execution), "{execution:?} twice");
-            assert_eq!(execution.arithmetic, arithmetic);
-        }
+    let all = executions();
+    assert_eq!(all[0], plain());
+    assert_eq!(all.len(), 12);
+    for (i, execution) in all.iter().enumerate() {
+        assert!(!all[..i].contains(execution), "{execution:?} twice");
     }
 }
 
@@ -178,11 +175,11 @@ proptest! {
         antialiasing in 0..4u32,
         importance in prop::bool::weighted(0.2),
     ) {
-        let mut scene = random_scene(seed);
+        let mut scene = random_scene(seed).with_arithmetic(ARITHMETICS[arithmetic]);
         scene.render.antialiasing = antialiasing;
         scene.render.sampling = if importance { Sampling::Importance } else { Sampling::Lattice };
-        let execution = executions(ARITHMETICS[arithmetic])[execution];
-        let right = in_tiles(&scene, size, plain(ARITHMETICS[arithmetic]), 1);
+        let execution = executions()[execution];
+        let right = in_tiles(&scene, size, plain(), 1);
         let found = in_tiles(&scene, size, execution, tile);
         prop_assert_eq!(difference(&found, &right), None, "{:?}", execution);
     }

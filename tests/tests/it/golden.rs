@@ -6,7 +6,7 @@
 //! the whole table as it has to stand here.
 
 use rayweave_contract::Image;
-use rayweave_core::{Arithmetic, Formulas, Precision, Sampling, Scene, tracer};
+use rayweave_core::{Arithmetic, Execution, Formulas, Precision, Sampling, Scene, tracer};
 use rayweave_tests::{picture, random_scene::random_scene, scenes};
 
 const WIDTH: u32 = 100;
@@ -83,7 +83,9 @@ fn textbook_pictures_stay_what_they_are() {
         scene.render.antialiasing = 0;
         let digests = [Precision::F32, Precision::F64].map(|precision| {
             let arithmetic = Arithmetic { formulas: Formulas::Textbook, precision };
-            let work = tracer(&scene, WIDTH, HEIGHT, arithmetic).expect("a sound scene");
+            let work =
+                tracer(&scene.with_arithmetic(arithmetic), WIDTH, HEIGHT, Execution::default())
+                    .expect("a sound scene");
             first_digits(&picture::pixel_by_pixel(&*work, WIDTH, HEIGHT))
         });
         (name, digests)

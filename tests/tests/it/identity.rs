@@ -5,7 +5,7 @@
 //! tracer, against pictures that no strategy had a hand in.
 
 use rayweave_contract::{Image, Plan, Rect, Rgb, Tile, Work};
-use rayweave_core::{Precision, Scene, tracer};
+use rayweave_core::{Execution, Precision, Scene, tracer};
 use rayweave_tests::picture::pixel_by_pixel;
 use rayweave_tests::{random_scene::random_scene, scenes};
 use std::num::{NonZeroU32, NonZeroUsize};
@@ -28,7 +28,8 @@ fn scene(name: &str) -> Scene {
 fn strategies_agree(name: &str, precision: Precision) {
     let scene = scene(name);
     let pictures = SIZES.map(|(width, height)| {
-        let work = tracer(&scene, width, height, precision).expect("a sound scene");
+        let work = tracer(&scene.with_arithmetic(precision), width, height, Execution::default())
+            .expect("a sound scene");
         let right = pixel_by_pixel(&*work, width, height);
         (work, right)
     });
@@ -84,7 +85,9 @@ fn a_pixel_is_the_same_in_every_tile() {
     for (number, scene) in scenes.iter().enumerate() {
         for precision in [Precision::F32, Precision::F64] {
             for (width, height) in [(1, 1), (1, 50), (50, 1), (7, 3), (48, 31)] {
-                let work = tracer(scene, width, height, precision).expect("a sound scene");
+                let work =
+                    tracer(&scene.with_arithmetic(precision), width, height, Execution::default())
+                        .expect("a sound scene");
                 let context = format!("scene {number} in {precision}, {width}x{height}");
                 tilings_agree(&*work, width, height, &context);
             }
@@ -123,7 +126,9 @@ fn tilings_agree(work: &dyn Work, width: u32, height: u32, context: &str) {
 #[test]
 fn a_pixel_is_the_same_every_time() {
     for name in scenes::NAMES {
-        let work = tracer(&scene(name), 20, 15, Precision::F32).expect("a sound scene");
+        let work =
+            tracer(&scene(name).with_arithmetic(Precision::F32), 20, 15, Execution::default())
+                .expect("a sound scene");
         let first = pixel_by_pixel(&*work, 20, 15);
         assert_same(&pixel_by_pixel(&*work, 20, 15), &first, name);
     }

@@ -146,8 +146,8 @@ fn the_displacement_and_the_mirrors_decide() {
     assert_eq!(demand(F32_DISPLACEMENT * more, 0.0).precision(), Precision::F64);
     assert_eq!(demand(0.0, F32_MIRRORS * more).precision(), Precision::F64);
     // Packets, whatever else asks for `f64`; not between mirrors that scatter.
-    assert_eq!(demand(F32_DISPLACEMENT * more, F32_MIRRORS).lanes(), Lanes::default());
-    assert_eq!(demand(0.0, F32_MIRRORS * more).lanes(), Lanes::One);
+    assert_eq!(Lanes::suggested(&demand(F32_DISPLACEMENT * more, F32_MIRRORS)), Lanes::default());
+    assert_eq!(Lanes::suggested(&demand(0.0, F32_MIRRORS * more)), Lanes::One);
     // Planes without anything beside them have no outline: no coordinate is too large for them.
     let floor = Plane { point: -1e8 * DVec3::Y, normal: DVec3::Y, material: 0 };
     assert_eq!(chosen(&Scene { planes: vec![floor], ..empty() }), Precision::F32);

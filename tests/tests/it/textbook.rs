@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 use rayweave_core::scene::{Cylinder, Plane, Sphere, Triangle};
-use rayweave_core::{Arithmetic, Caster, Formulas, Precision, Scene, tracer};
+use rayweave_core::{Arithmetic, Caster, Execution, Formulas, Precision, Scene, tracer};
 use rayweave_measure::random::SplitMix64;
 use rayweave_tests::scenes::empty;
 use rayweave_tests::{metrics, model, picture, random_scene::random_scene};
@@ -15,7 +15,7 @@ fn v(x: f64, y: f64, z: f64) -> DVec3 {
 }
 
 fn t(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<f64> {
-    Caster::new(scene, TEXTBOOK)
+    Caster::new(&scene.with_arithmetic(TEXTBOOK))
         .expect("a sound scene")
         .nearest_hit(origin, direction)
         .map(|hit| hit.t)
@@ -64,7 +64,8 @@ fn random_scenes_agree() {
     for seed in 100..130 {
         let mut scene = random_scene(seed);
         scene.render.antialiasing = 0;
-        let work = tracer(&scene, 48, 36, TEXTBOOK).expect("a sound scene");
+        let work = tracer(&scene.with_arithmetic(TEXTBOOK), 48, 36, Execution::default())
+            .expect("a sound scene");
         let psnr =
             metrics::psnr(&model::render(&scene, 48, 36), &picture::pixel_by_pixel(&*work, 48, 36));
         assert!(psnr >= 35.0, "seed {seed}: {psnr:.1} dB");
@@ -102,11 +103,12 @@ fn both_families_hit_the_same() {
             let within = a + (b - a) * share.x.abs() + (c - a) * share.y.abs();
             let target = if scene.triangles.is_empty() { a + (b - c) / 4.0 } else { within };
             let (origin, direction) = (d, target - d);
-            let robust = Caster::new(scene, Precision::F64)
+            let robust = Caster::new(&scene.with_arithmetic(Precision::F64))
                 .expect("a sound scene")
                 .nearest_hit(origin, direction);
-            let found =
-                Caster::new(scene, TEXTBOOK).expect("a sound scene").nearest_hit(origin, direction);
+            let found = Caster::new(&scene.with_arithmetic(TEXTBOOK))
+                .expect("a sound scene")
+                .nearest_hit(origin, direction);
             if robust.is_some_and(|hit| hit.t < 2e-3) {
                 continue;
             }
@@ -156,7 +158,9 @@ fn what_is_within_the_offset_of_a_light_hides_nothing() {
     scene.lights.truncate(1);
     scene.lights[0].position = v(0.0, 4.0, 0.0);
     let color = |scene: &Scene| {
-        Caster::new(scene, TEXTBOOK).expect("a sound scene").color(v(0.0, 1.0, 0.0), -DVec3::Y)
+        Caster::new(&scene.with_arithmetic(TEXTBOOK))
+            .expect("a sound scene")
+            .color(v(0.0, 1.0, 0.0), -DVec3::Y)
     };
     let lit = color(&scene);
     let ceiling = |y| Scene {

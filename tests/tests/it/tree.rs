@@ -14,9 +14,10 @@ const PRECISIONS: [Precision; 2] = [Precision::F32, Precision::F64];
 
 /// What is different with a search, in any packet, from a picture that tries everything.
 fn search_differs(scene: &Scene, size: (u32, u32), precision: Precision) -> Option<String> {
-    let right = in_tiles(scene, size, plain(precision), 1000);
+    let scene = &scene.with_arithmetic(precision);
+    let right = in_tiles(scene, size, plain(), 1000);
     Lanes::ALL.into_iter().find_map(|lanes| {
-        let execution = Execution { lanes, search: Search::Auto, ..plain(precision) };
+        let execution = Execution { lanes, search: Search::Auto, ..plain() };
         let difference = difference(&in_tiles(scene, size, execution, 1000), &right)?;
         Some(format!("{precision}, {lanes:?}: {difference}"))
     })
@@ -151,8 +152,9 @@ proptest! {
         let offset = DVec3::new(offset, -0.7 * offset, 0.3 * offset);
         let scene = enlarged(&moved(&crowd(seed, count, shape, arrangement), offset), scale);
         prop_assume!(scene.check().is_ok());
-        let right = in_tiles(&scene, (16, 12), plain(precision), 1000);
-        let execution = Execution { lanes, search: Search::Auto, ..plain(precision) };
+        let scene = scene.with_arithmetic(precision);
+        let right = in_tiles(&scene, (16, 12), plain(), 1000);
+        let execution = Execution { lanes, search: Search::Auto, ..plain() };
         let found = in_tiles(&scene, (16, 12), execution, 1000);
         prop_assert_eq!(difference(&found, &right), None);
     }

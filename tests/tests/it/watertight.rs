@@ -9,7 +9,7 @@ use rayweave_tests::meshes::{self, cube, scene_of};
 use rayweave_tests::transform::{enlarged, moved};
 
 fn caster(scene: &Scene, precision: Precision) -> Caster {
-    Caster::new(scene, precision).expect("a sound scene")
+    Caster::new(&scene.with_arithmetic(precision)).expect("a sound scene")
 }
 
 /// Where a ray is aimed: at a corner, a point of an edge or one of a face, of some triangle.

@@ -2,7 +2,7 @@
 
 use rayweave_contract::Work;
 use rayweave_core::scene::{RenderSettings, SceneError};
-use rayweave_core::{Arithmetic, Formulas, Precision, Sampling, Scene, tracer};
+use rayweave_core::{Arithmetic, Execution, Formulas, Precision, Sampling, Scene, tracer};
 use std::fmt;
 
 /// One position of every knob.
@@ -99,12 +99,12 @@ impl Setting {
         scene: &Scene,
         (width, height): (u32, u32),
     ) -> Result<Box<dyn Work + Send>, SceneError> {
-        let mut scene = scene.clone();
+        let mut scene = scene.with_arithmetic(self.arithmetic);
         scene.render.sampling = self.sampling;
         scene.render.adaptive = self.adaptive;
         scene.render.antialiasing = self.antialiasing;
         scene.render.max_reflections = self.max_reflections;
-        tracer(&scene, width, height, self.arithmetic)
+        tracer(&scene, width, height, Execution::default())
     }
 }
 

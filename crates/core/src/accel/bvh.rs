@@ -9,17 +9,13 @@
 
 use crate::ray::{Heading, Ray};
 use crate::shapes::MARGIN;
+use crate::shapes::aabb::Bounds;
 use crate::shapes::shape_list::Leaf;
 use crate::simd::lane::{Lane, Mask, Scalar};
 use crate::simd::vector::Vector;
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::{Bvh2, builder::build_bvh2};
-
-/// The box around a primitive: the lower x, y and z, the upper ones, and two numbers that make it
-/// eight.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Bounds<S>([S; 8]);
 
 #[derive(Debug)]
 pub(crate) struct Tree<S> {
@@ -69,31 +65,6 @@ fn build_parameters(primitives: usize) -> BvhBuildParams {
         max_prims_per_leaf: 4,
         collapse_traversal_cost: 2.0,
         ..medium
-    }
-}
-
-impl<S: Scalar> Bounds<S> {
-    pub(crate) fn new(low: Vector<S>, high: Vector<S>) -> Self {
-        let zero = S::literal(0.0);
-        Self([low.x, low.y, low.z, high.x, high.y, high.z, zero, zero])
-    }
-
-    fn low(&self) -> Vector<S> {
-        Vector::new(self.0[0], self.0[1], self.0[2])
-    }
-
-    fn high(&self) -> Vector<S> {
-        Vector::new(self.0[3], self.0[4], self.0[5])
-    }
-
-    fn join(self, other: Self) -> Self {
-        Self::new(self.low().min(other.low()), self.high().max(other.high()))
-    }
-
-    /// The largest magnitude of a coordinate.
-    fn reach(&self) -> S {
-        let Vector { x, y, z } = self.low().abs().max(self.high().abs());
-        x.max(y).max(z)
     }
 }
 
@@ -269,7 +240,7 @@ impl<L: Lane> Slabs<L> {
     fn reach(&self, bounds: &Bounds<L::Scalar>, limit: L) -> L::Mask {
         // Where the ray passes a side.
         let at = |axis: usize, side: usize| {
-            let side_at = L::splat(bounds.0[self.sides[axis][side] % 8]);
+            let side_at = L::splat(bounds.side(self.sides[axis][side]));
             (side_at - self.origin[axis][side]) * self.inverse[axis]
         };
         // Written out: a `map` over an array is not always inlined.

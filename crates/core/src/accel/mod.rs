@@ -4,5 +4,6 @@ pub(crate) mod behind_culling;
 pub(crate) mod bounding_sphere;
 pub(crate) mod bvh;
 pub(crate) mod cones;
+pub(crate) mod occluders;
 pub(crate) mod plane_culling;
 pub(crate) mod primitives;

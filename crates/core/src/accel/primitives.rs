@@ -2,14 +2,15 @@
 //! anything in between.
 
 use crate::accel::bounding_sphere::Enclosure;
-use crate::accel::bvh::{Bounds, Tree};
+use crate::accel::bvh::Tree;
 use crate::accel::cones::Bundle;
+use crate::accel::occluders::Occluders;
 use crate::execution::Search;
 use crate::formulas::{Aim, Family, LightPath};
-use crate::material::Light;
 use crate::ray::{AxisOrder, Ray, miss};
 use crate::scene::Scene;
 use crate::shapes::SurfacePoint;
+use crate::shapes::aabb::Bounds;
 use crate::shapes::cylinder::{self, Cylinder};
 use crate::shapes::plane::Plane;
 use crate::shapes::shape_list::{Kind, Leaf};
@@ -322,7 +323,8 @@ impl<S: Scalar> Primitives<S> {
         }
     }
 
-    /// The lanes of `wanted` whose ray, on the `path` to `light`, meets something before `limit`.
+    /// The lanes of `wanted` whose ray, on the `path` to the light of these `occluders`, meets something
+    /// before `limit`.
     #[inline(always)]
     pub(crate) fn blocked<L: Lane<Scalar = S>, F: Family>(
         &self,
@@ -330,16 +332,16 @@ impl<S: Scalar> Primitives<S> {
         limit: L,
         wanted: L::Mask,
         path: &LightPath<L>,
-        light: &Light<S>,
+        occluders: &Occluders<S>,
     ) -> L::Mask {
         let mut free = wanted;
-        for &plane in &light.planes {
+        for &plane in &occluders.planes {
             free = free & !F::plane(&self.planes[plane as usize], ray).lt(limit);
         }
         if !free.any() {
             return wanted;
         }
-        match (&self.tree, &light.bundle) {
+        match (&self.tree, &occluders.cones) {
             (Some(tree), _) if F::FAITHFUL => ray.by_heading(free, |heading, wanted| {
                 let aim = self.aim(ray, Some(heading.order));
                 tree.visit(ray, heading, wanted, limit, |leaf, reached| {

@@ -1,6 +1,6 @@
 //! The formulas that keep their digits; those of the shapes stand beside the shapes.
 
-use super::{Family, LightPath};
+use super::family::{Family, LightPath};
 use crate::ray::Ray;
 use crate::shapes::SurfacePoint;
 use crate::shapes::cylinder::{self, Cylinder};
@@ -10,7 +10,7 @@ use crate::shapes::triangle::{self, Triangle};
 use crate::simd::lane::{Lane, Scalar};
 use crate::simd::vector::Vector;
 
-/// The family of [`Formulas::Robust`](super::Formulas::Robust).
+/// The family of [`Formulas::Robust`](crate::Formulas::Robust).
 #[derive(Debug)]
 pub(crate) struct Robust;
 

@@ -1,6 +1,6 @@
 //! The formulas of the lab report, its slips mended: to see what they cost, and what they cost not.
 
-use super::{Family, LightPath};
+use super::family::{Family, LightPath};
 use crate::ray::{Ray, miss};
 use crate::shapes::SurfacePoint;
 use crate::shapes::cylinder::{self, Cylinder};
@@ -10,7 +10,7 @@ use crate::shapes::triangle::{self, Triangle};
 use crate::simd::lane::{Lane, Mask};
 use crate::simd::vector::Vector;
 
-/// The family of [`Formulas::Textbook`](super::Formulas::Textbook).
+/// The family of [`Formulas::Textbook`](crate::Formulas::Textbook).
 #[derive(Debug)]
 pub(crate) struct Textbook;
 

@@ -2,7 +2,7 @@
 
 use crate::camera::Camera;
 use crate::execution::{Execution, Lanes};
-use crate::formulas::{Compiled, Family};
+use crate::formulas::{Compiled, Family, select};
 use crate::render::adaptive::Bands;
 use crate::render::filter::Filter;
 use crate::render::lattice::LatticeSums;
@@ -26,10 +26,10 @@ pub fn tracer(
     scene: &Scene,
     width: u32,
     height: u32,
-    execution: impl Into<Execution>,
+    execution: Execution,
 ) -> Result<Box<dyn Work + Send>, SceneError> {
     scene.check()?;
-    Ok(Picture { scene, width, height, execution: execution.into() }.tracer())
+    Ok(Picture { scene, width, height, execution }.tracer())
 }
 
 /// What a tracer is compiled for.
@@ -44,7 +44,7 @@ impl Picture<'_> {
     /// Not generic, so that all that is compiled for it is compiled in this crate, and in none that
     /// uses it.
     fn tracer(self) -> Box<dyn Work + Send> {
-        self.execution.arithmetic.select(self)
+        select(self.scene.render.arithmetic, self)
     }
 }
 

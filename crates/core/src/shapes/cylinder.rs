@@ -1,7 +1,7 @@
 //! The open cylinder around a vertical axis: a circle in x and z, bounded in y.
 
+use super::aabb::Bounds;
 use super::{SurfacePoint, clearance, quadric};
-use crate::accel::bvh::Bounds;
 use crate::ray::{Ray, miss};
 use crate::scene;
 use crate::simd::lane::{Lane, Mask, Scalar};

@@ -5,6 +5,7 @@
 //! one comparison, and NaN, from input that means nothing, is never nearer. What of a ray is the
 //! same for all shapes of a kind is computed once, as the kind's `Aim`.
 
+pub(crate) mod aabb;
 pub(crate) mod cylinder;
 pub(crate) mod plane;
 mod quadric;

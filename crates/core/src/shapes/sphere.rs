@@ -1,7 +1,7 @@
 //! The sphere.
 
+use super::aabb::Bounds;
 use super::{SurfacePoint, clearance, quadric};
-use crate::accel::bvh::Bounds;
 use crate::ray::{Ray, miss};
 use crate::scene;
 use crate::simd::lane::{Lane, Mask, Scalar};

@@ -1,7 +1,7 @@
 //! The triangle, its edges included, without gaps to its neighbours.
 
+use super::aabb::Bounds;
 use super::{SurfacePoint, clearance};
-use crate::accel::bvh::Bounds;
 use crate::ray::{AxisOrder, Ray, miss};
 use crate::scene;
 use crate::simd::lane::{Lane, Mask, Scalar, sign_of_difference};

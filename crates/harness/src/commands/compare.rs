@@ -353,8 +353,8 @@ fn subjects<'a>(
     input: &'a Input,
     options: &'a Options,
 ) -> impl Iterator<Item = Result<Subject, String>> + 'a {
-    let Execution { arithmetic: Arithmetic { formulas, precision }, lanes, search, .. } =
-        input.execution;
+    let Arithmetic { formulas, precision } = input.scene.render.arithmetic;
+    let Execution { lanes, search, .. } = input.execution;
     let accel = match search {
         Search::Auto => "auto",
         Search::Exhaustive => "none",

@@ -80,10 +80,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
 fn explain(input: &Input, preparing: f64) -> Result<String, String> {
     let analysis =
         Analysis::of(&input.scene, &input.execution).map_err(|e| format!("{}: {e}", input.name))?;
-    let Execution { arithmetic, lanes, share_samples, .. } = input.execution;
+    let Execution { lanes, share_samples, .. } = input.execution;
     let settings = &input.scene.render;
     let shared = settings.has_lattice() && (share_samples || settings.adaptive);
-    let lanes = lanes.count(arithmetic.precision);
+    let lanes = lanes.count(settings.arithmetic.precision);
     let samples = if shared { "shared by the pixels of a tile" } else { "each pixel's own" };
     Ok(format!(
         "{analysis}\npackets: {lanes} rays; samples: {samples}\nprepared in {preparing:.6} s, a tree's building included\n"

@@ -1,0 +1,13 @@
+//! The primitives that may lie between a light and the points it lights.
+
+use super::cones::Bundle;
+
+/// The primitives that a shadow ray to one light has to try.
+#[derive(Clone, Debug)]
+pub(crate) struct Occluders<S> {
+    /// The planes, by number.
+    pub(crate) planes: Vec<u32>,
+    /// The direction cones of all other primitives, seen from the light. Without cones each of
+    /// them may be in the way.
+    pub(crate) cones: Option<Bundle<S>>,
+}
