@@ -9,8 +9,8 @@
 //! | `empty scene` | from the eye | nothing: the least a ray costs |
 //! | `planes`, `spheres`, `triangles`, `cylinders` | from the eye | each of 8 of the kind |
 //! | `shadows of spheres`, ... | these, and from each hit to a light | each of the 8 |
-//! | `tree of N spheres` | from the eye | what the tree leaves |
-//! | `tree of N mirrors` | these, and from each hit one in a direction of its own | what the tree leaves |
+//! | `tree of N spheres` | from the eye | what the BVH leaves |
+//! | `tree of N mirrors` | these, and from each hit one in a direction of its own | what the BVH leaves |
 //! | `filter` | of the scene `room.toml`, by kind of anti-aliasing | what the search leaves |
 //!
 //! A ray's time has the shading of its hit in it. Criterion measures one bench after the other, and
@@ -53,7 +53,7 @@ fn shadows(criterion: &mut Criterion) {
     }
 }
 
-fn trees(criterion: &mut Criterion) {
+fn bvhs(criterion: &mut Criterion) {
     for (rays, what) in [(Rays::FromEye, "spheres"), (Rays::AndMirrored, "mirrors")] {
         for count in [1_000, 100_000] {
             let name = format!("tree of {count} {what}");
@@ -154,5 +154,5 @@ fn bench_lanes(
     }
 }
 
-criterion_group!(benches, kinds, shadows, trees, filter);
+criterion_group!(benches, kinds, shadows, bvhs, filter);
 criterion_main!(benches);

@@ -22,19 +22,19 @@ pub struct Analysis {
     /// For each light that can, the planes that may hide it.
     pub hiding_planes: Vec<usize>,
     /// How a ray finds what it hits among the primitives that are not planes.
-    pub search: Found,
+    pub search: HitSearch,
 }
 
 /// How a ray finds what it hits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Found {
+pub enum HitSearch {
     /// It tries each.
-    Each,
+    BruteForce,
     /// It tries those in whose direction it goes, if it starts at the eye or ends at a light; else
     /// each, triangles if it comes near any.
     Cones,
     /// It follows a tree of boxes of this many leaves.
-    Tree {
+    Bvh {
         /// Of a few primitives each.
         leaves: usize,
     },
@@ -75,9 +75,9 @@ impl Compiled for Looked<'_> {
             lights: (scene.lights.len(), hiding_planes.len()),
             hiding_planes,
             search: match (world.primitives.leaves(), &world.eye) {
-                (Some(leaves), _) => Found::Tree { leaves },
-                (None, Some(_)) => Found::Cones,
-                (None, None) => Found::Each,
+                (Some(leaves), _) => HitSearch::Bvh { leaves },
+                (None, Some(_)) => HitSearch::Cones,
+                (None, None) => HitSearch::BruteForce,
             },
         }
     }
@@ -94,12 +94,14 @@ impl fmt::Display for Analysis {
             writeln!(f, "left out: {} of them, behind all that rays reach", self.behind)?;
         }
         match self.search {
-            Found::Each => writeln!(f, "search: every ray tries every primitive")?,
-            Found::Cones => writeln!(
+            HitSearch::BruteForce => writeln!(f, "search: every ray tries every primitive")?,
+            HitSearch::Cones => writeln!(
                 f,
                 "search: rays from the eye, also by a plane's mirror, and to a light try what is in their direction; others each primitive, triangles if they come near any"
             )?,
-            Found::Tree { leaves } => writeln!(f, "search: a tree of boxes with {leaves} leaves")?,
+            HitSearch::Bvh { leaves } => {
+                writeln!(f, "search: a tree of boxes with {leaves} leaves")?;
+            }
         }
         match self.bounces {
             0 => writeln!(f, "mirrors: none")?,
@@ -160,12 +162,12 @@ mod tests {
     fn what_is_not_needed_is_left_out() {
         let few = analysis(3, 0.0, Search::Auto);
         assert_eq!((few.primitives, few.bounces, few.lights), ([1, 3, 0, 0], 0, (3, 1)));
-        assert_eq!((few.hiding_planes.as_slice(), few.search), (&[0][..], Found::Cones));
+        assert_eq!((few.hiding_planes.as_slice(), few.search), (&[0][..], HitSearch::Cones));
         assert_eq!(analysis(3, 0.5, Search::Auto).bounces, 4);
         assert!(
-            matches!(analysis(100, 0.0, Search::Auto).search, Found::Tree { leaves } if leaves > 10)
+            matches!(analysis(100, 0.0, Search::Auto).search, HitSearch::Bvh { leaves } if leaves > 10)
         );
-        assert_eq!(analysis(100, 0.0, Search::Exhaustive).search, Found::Each);
+        assert_eq!(analysis(100, 0.0, Search::Exhaustive).search, HitSearch::BruteForce);
     }
 
     /// Catches what is left out though a mirror, or the way to a light behind the eye, shows it;

@@ -331,7 +331,7 @@ fn rays_along_things() {
                 v(0.0, 1.0, 3.0),
             ]));
             assert_agrees_everywhere(&scene, &format!("from {from} to {to}, {thin} wide"));
-            // A tree's boxes as well.
+            // The boxes of a BVH as well.
             let copies = (0..12).map(|i| sphere(v(-1.0, 0.0, f64::from(i)), 1.0));
             scene.spheres.extend(copies);
             assert_agrees_everywhere(&scene, &format!("a tree, from {from} to {to}, {thin} wide"));

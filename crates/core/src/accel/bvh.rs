@@ -9,16 +9,16 @@
 
 use crate::ray::{Heading, Ray};
 use crate::shapes::MARGIN;
-use crate::shapes::aabb::Bounds;
+use crate::shapes::aabb::Aabb;
 use crate::shapes::shape_list::Leaf;
 use crate::simd::lane::{Lane, Mask, Scalar};
 use crate::simd::vector::Vector;
 use obvhs::BvhBuildParams;
-use obvhs::aabb::Aabb;
+use obvhs::aabb::Aabb as BuilderAabb;
 use obvhs::bvh2::{Bvh2, builder::build_bvh2};
 
 #[derive(Debug)]
-pub(crate) struct Tree<S> {
+pub(crate) struct Bvh<S> {
     /// The root first.
     nodes: Vec<Node<S>>,
     leaves: Vec<Leaf>,
@@ -28,7 +28,7 @@ pub(crate) struct Tree<S> {
 
 #[derive(Clone, Copy, Debug)]
 struct Node<S> {
-    bounds: Bounds<S>,
+    bounds: Aabb<S>,
     /// The number of its leaf; or of the first of its two children, which lie next to each other.
     first: u32,
     content: Content,
@@ -68,25 +68,25 @@ fn build_parameters(primitives: usize) -> BvhBuildParams {
     }
 }
 
-impl<S: Scalar> Tree<S> {
+impl<S: Scalar> Bvh<S> {
     /// Over primitives in these boxes; `leaf` takes the numbers of those that are tried together.
     /// None if there is no primitive, or the tree would be too deep.
-    pub(crate) fn new(bounds: &[Bounds<S>], mut leaf: impl FnMut(&[u32]) -> Leaf) -> Option<Self> {
-        let whole = bounds.iter().copied().reduce(Bounds::join)?;
+    pub(crate) fn build(bounds: &[Aabb<S>], mut leaf: impl FnMut(&[u32]) -> Leaf) -> Option<Self> {
+        let whole = bounds.iter().copied().reduce(Aabb::join)?;
         if !whole.reach().lt(S::literal(LARGEST)) {
             return None;
         }
-        let boxes: Vec<Aabb> = bounds.iter().map(rounded).collect();
+        let boxes: Vec<BuilderAabb> = bounds.iter().map(rounded).collect();
         let bvh = build_bvh2(&boxes, build_parameters(boxes.len()), &mut Default::default());
         if depth(&bvh) > MAX_DEPTH {
             return None;
         }
-        let mut tree = Self {
+        let mut built = Self {
             nodes: Vec::with_capacity(bvh.nodes.len()),
             leaves: Vec::new(),
             reach: whole.reach(),
         };
-        tree.nodes.push(Node { bounds: whole, first: 0, content: Content::Leaf });
+        built.nodes.push(Node { bounds: whole, first: 0, content: Content::Leaf });
         // Each pair of children lies next to each other, its parent before it.
         let mut pending = vec![(0, 0)];
         while let Some((source, target)) = pending.pop() {
@@ -96,34 +96,35 @@ impl<S: Scalar> Tree<S> {
                     node.first_index as usize..(node.first_index + node.prim_count) as usize;
                 let members = &bvh.primitive_indices[members];
                 let boxes = members.iter().map(|&member| bounds[member as usize]);
-                if let Some(joined) = boxes.reduce(Bounds::join) {
-                    tree.nodes[target].bounds = joined;
+                if let Some(joined) = boxes.reduce(Aabb::join) {
+                    built.nodes[target].bounds = joined;
                 }
-                tree.leaves.push(leaf(members));
-                (tree.leaves.len() - 1, Content::Leaf)
+                built.leaves.push(leaf(members));
+                (built.leaves.len() - 1, Content::Leaf)
             } else {
                 let (left, right) = (node.first_index as usize, node.first_index as usize + 1);
                 let apart = bvh.nodes[right].aabb.center() - bvh.nodes[left].aabb.center();
                 let axis = apart.abs().max_position();
                 let lower_first = if apart[axis] >= 0.0 { [left, right] } else { [right, left] };
-                let first = tree.nodes.len();
+                let first = built.nodes.len();
                 for (i, child) in lower_first.into_iter().enumerate() {
-                    tree.nodes.push(tree.nodes[0]);
+                    built.nodes.push(built.nodes[0]);
                     pending.push((child, first + i));
                 }
                 (first, Content::Children { axis: axis as u8 })
             };
-            tree.nodes[target].first = first as u32;
-            tree.nodes[target].content = content;
+            built.nodes[target].first = first as u32;
+            built.nodes[target].content = content;
         }
         // The boxes in this precision, from the leaves up.
-        for i in (0..tree.nodes.len()).rev() {
-            if tree.nodes[i].content != Content::Leaf {
-                let first = tree.nodes[i].first as usize;
-                tree.nodes[i].bounds = tree.nodes[first].bounds.join(tree.nodes[first + 1].bounds);
+        for i in (0..built.nodes.len()).rev() {
+            if built.nodes[i].content != Content::Leaf {
+                let first = built.nodes[i].first as usize;
+                built.nodes[i].bounds =
+                    built.nodes[first].bounds.join(built.nodes[first + 1].bounds);
             }
         }
-        Some(tree)
+        Some(built)
     }
 
     pub(crate) fn leaves(&self) -> usize {
@@ -134,7 +135,7 @@ impl<S: Scalar> Tree<S> {
     /// `limit`, with the rays that may, from near to far. `found` returns the rays that still want
     /// to know, and their limits.
     #[inline(always)]
-    pub(crate) fn visit<L: Lane<Scalar = S>>(
+    pub(crate) fn traverse<L: Lane<Scalar = S>>(
         &self,
         ray: &Ray<L>,
         heading: Heading,
@@ -237,7 +238,7 @@ impl<L: Lane> Slabs<L> {
 
     /// The rays that may hit something in the box before `limit`.
     #[inline(always)]
-    fn reach(&self, bounds: &Bounds<L::Scalar>, limit: L) -> L::Mask {
+    fn reach(&self, bounds: &Aabb<L::Scalar>, limit: L) -> L::Mask {
         // Where the ray passes a side.
         let at = |axis: usize, side: usize| {
             let side_at = L::splat(bounds.side(self.sides[axis][side]));
@@ -252,9 +253,9 @@ impl<L: Lane> Slabs<L> {
 
 /// The box in the builder's numbers. It only guides the tree's shape, so a rounding does not
 /// matter.
-fn rounded<S: Scalar>(bounds: &Bounds<S>) -> Aabb {
+fn rounded<S: Scalar>(bounds: &Aabb<S>) -> BuilderAabb {
     let corner = |v: Vector<S>| v.widened().as_vec3a();
-    Aabb::new(corner(bounds.low()), corner(bounds.high()))
+    BuilderAabb::new(corner(bounds.low()), corner(bounds.high()))
 }
 
 /// Of the deepest leaf, where the root has 1.

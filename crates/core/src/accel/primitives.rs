@@ -2,7 +2,7 @@
 //! anything in between.
 
 use crate::accel::bounding_sphere::Enclosure;
-use crate::accel::bvh::Tree;
+use crate::accel::bvh::Bvh;
 use crate::accel::cones::Bundle;
 use crate::accel::occluders::Occluders;
 use crate::execution::Search;
@@ -10,7 +10,7 @@ use crate::formulas::{Aim, Family, LightPath};
 use crate::ray::{AxisOrder, Ray, miss};
 use crate::scene::Scene;
 use crate::shapes::SurfacePoint;
-use crate::shapes::aabb::Bounds;
+use crate::shapes::aabb::Aabb;
 use crate::shapes::cylinder::{self, Cylinder};
 use crate::shapes::plane::Plane;
 use crate::shapes::shape_list::{Kind, Leaf};
@@ -21,7 +21,7 @@ use crate::simd::vector::Vector;
 
 /// From so many bounded primitives on there is a tree: of 63 spheres that mirror each other each is
 /// tried in less time (METHODOLOGY.md), of a thousand a tree is far ahead.
-const TREE_PAYS: usize = 64;
+const BVH_MIN_PRIMITIVES: usize = 64;
 
 /// The primitives by kind. A primitive's number counts through planes, spheres, triangles and
 /// cylinders, each in file order: it decides between equal distances.
@@ -34,7 +34,7 @@ pub(crate) struct Primitives<S> {
     /// All triangles, and all others that are not planes.
     triangles_and_others: [Leaf; 2],
     /// Over these, where there are enough of them.
-    tree: Option<Tree<S>>,
+    bvh: Option<Bvh<S>>,
     /// Around each triangle, where the nearest hit is asked for rays of unit direction only and no
     /// tree finds it.
     around_triangles: Vec<Enclosure<S>>,
@@ -95,12 +95,12 @@ impl<S: Scalar> Primitives<S> {
                     ..Leaf::default()
                 },
             ],
-            tree: None,
+            bvh: None,
             around_triangles: vec![],
             materials,
         };
         if search == Search::Auto {
-            primitives.plant();
+            primitives.build_bvh();
         }
         primitives
     }
@@ -111,7 +111,7 @@ impl<S: Scalar> Primitives<S> {
 
     /// Of the tree, if there is one.
     pub(crate) fn leaves(&self) -> Option<usize> {
-        self.tree.as_ref().map(Tree::leaves)
+        self.bvh.as_ref().map(Bvh::leaves)
     }
 
     /// From now on all rays of which the nearest hit is asked have unit direction. No shadow ray
@@ -121,19 +121,19 @@ impl<S: Scalar> Primitives<S> {
     }
 
     /// Puts a tree over the bounded primitives, if there are enough of them.
-    fn plant(&mut self) {
+    fn build_bvh(&mut self) {
         let Self { spheres, triangles, cylinders, .. } = self;
         let counts = [spheres.shapes.len(), triangles.shapes.len(), cylinders.shapes.len()];
-        if counts.iter().sum::<usize>() < TREE_PAYS {
+        if counts.iter().sum::<usize>() < BVH_MIN_PRIMITIVES {
             return;
         }
-        let bounds: Vec<Bounds<S>> = (spheres.shapes.iter().map(Sphere::bounds))
+        let bounds: Vec<Aabb<S>> = (spheres.shapes.iter().map(Sphere::bounds))
             .chain(triangles.shapes.iter().map(Triangle::bounds))
             .chain(cylinders.shapes.iter().map(Cylinder::bounds))
             .collect();
         // The shapes of a leaf get places next to each other.
         let mut order = [vec![], vec![], vec![]];
-        self.tree = Tree::new(&bounds, |members| {
+        self.bvh = Bvh::build(&bounds, |members| {
             let from = order.each_ref().map(|places| places.len() as u32);
             for &member in members {
                 let mut place = member as usize;
@@ -147,7 +147,7 @@ impl<S: Scalar> Primitives<S> {
             let to = order.each_ref().map(|places| places.len() as u32);
             Leaf { spheres: from[0]..to[0], triangles: from[1]..to[1], cylinders: from[2]..to[2] }
         });
-        if self.tree.is_some() {
+        if self.bvh.is_some() {
             self.spheres.arrange(&order[0]);
             self.triangles.arrange(&order[1]);
             self.cylinders.arrange(&order[2]);
@@ -190,10 +190,10 @@ impl<S: Scalar> Primitives<S> {
         for (number, plane) in (0..).zip(&self.planes) {
             nearest.offer::<true>(number, F::plane(plane, ray));
         }
-        match (&self.tree, from) {
-            (Some(tree), _) if F::FAITHFUL => ray.by_heading(wanted, |heading, wanted| {
+        match (&self.bvh, from) {
+            (Some(bvh), _) if F::FAITHFUL => ray.by_heading(wanted, |heading, wanted| {
                 let aim = self.aim(ray, Some(heading.order));
-                tree.visit(ray, heading, wanted, nearest.t, |leaf, reached| {
+                bvh.traverse(ray, heading, wanted, nearest.t, |leaf, reached| {
                     self.nearest_in::<L, F>(leaf, ray, &aim, reached, &mut nearest);
                     (wanted, nearest.t)
                 });
@@ -341,10 +341,10 @@ impl<S: Scalar> Primitives<S> {
         if !free.any() {
             return wanted;
         }
-        match (&self.tree, &occluders.cones) {
-            (Some(tree), _) if F::FAITHFUL => ray.by_heading(free, |heading, wanted| {
+        match (&self.bvh, &occluders.cones) {
+            (Some(bvh), _) if F::FAITHFUL => ray.by_heading(free, |heading, wanted| {
                 let aim = self.aim(ray, Some(heading.order));
-                tree.visit(ray, heading, wanted, limit, |leaf, reached| {
+                bvh.traverse(ray, heading, wanted, limit, |leaf, reached| {
                     free =
                         free & !(reached & !self.free_in::<L, F>(leaf, ray, &aim, limit, reached));
                     (wanted & free, limit)

@@ -6,9 +6,9 @@ use crate::simd::vector::Vector;
 /// The box around a primitive: the lower x, y and z, the upper ones, and two numbers that make it
 /// eight.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Bounds<S>([S; 8]);
+pub(crate) struct Aabb<S>([S; 8]);
 
-impl<S: Scalar> Bounds<S> {
+impl<S: Scalar> Aabb<S> {
     pub(crate) fn new(low: Vector<S>, high: Vector<S>) -> Self {
         let zero = S::literal(0.0);
         Self([low.x, low.y, low.z, high.x, high.y, high.z, zero, zero])

@@ -1,6 +1,6 @@
 //! The open cylinder around a vertical axis: a circle in x and z, bounded in y.
 
-use super::aabb::Bounds;
+use super::aabb::Aabb;
 use super::{SurfacePoint, clearance, quadric};
 use crate::ray::{Ray, miss};
 use crate::scene;
@@ -50,10 +50,10 @@ impl<S: Scalar> Cylinder<S> {
         }
     }
 
-    pub(crate) fn bounds(&self) -> Bounds<S> {
+    pub(crate) fn bounds(&self) -> Aabb<S> {
         let across = Vector::new(self.radius, S::literal(0.0), self.radius);
         let top = Vector { y: self.top, ..self.bottom };
-        Bounds::new(self.bottom - across, top + across)
+        Aabb::new(self.bottom - across, top + across)
     }
 
     /// The smaller of the [roots](quadric::roots) above 0 that are on the wall: both are tried,

@@ -1,6 +1,6 @@
 //! The sphere.
 
-use super::aabb::Bounds;
+use super::aabb::Aabb;
 use super::{SurfacePoint, clearance, quadric};
 use crate::ray::{Ray, miss};
 use crate::scene;
@@ -39,9 +39,9 @@ impl<S: Scalar> Sphere<S> {
         Self { center: Vector::rounded(sphere.center), radius, radius_squared: radius * radius }
     }
 
-    pub(crate) fn bounds(&self) -> Bounds<S> {
+    pub(crate) fn bounds(&self) -> Aabb<S> {
         let reach = Vector::new(self.radius, self.radius, self.radius);
-        Bounds::new(self.center - reach, self.center + reach)
+        Aabb::new(self.center - reach, self.center + reach)
     }
 
     /// The smaller of the [roots](quadric::roots) above 0.

@@ -1,6 +1,6 @@
 //! The triangle, its edges included, without gaps to its neighbours.
 
-use super::aabb::Bounds;
+use super::aabb::Aabb;
 use super::{SurfacePoint, clearance};
 use crate::ray::{AxisOrder, Ray, miss};
 use crate::scene;
@@ -78,9 +78,9 @@ impl<S: Scalar> Triangle<S> {
         }
     }
 
-    pub(crate) fn bounds(&self) -> Bounds<S> {
+    pub(crate) fn bounds(&self) -> Aabb<S> {
         let [a, b, c] = self.vertices;
-        Bounds::new(a.min(b).min(c), a.max(b).max(c))
+        Aabb::new(a.min(b).min(c), a.max(b).max(c))
     }
 
     /// The edge test of Woop, Benthin and Wald (Watertight Ray/Triangle Intersection, JCGT 2013):

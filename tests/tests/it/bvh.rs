@@ -1,4 +1,4 @@
-//! A tree of boxes leaves out what a ray does not meet, and nothing else: with it a picture has the
+//! The BVH leaves out what a ray does not meet, and nothing else: with it a picture has the
 //! bits that it has when each ray tries each primitive.
 
 use glam::DVec3;
@@ -49,13 +49,13 @@ fn crowds_agree(count: usize, size: (u32, u32), seeds: std::ops::Range<u64>) {
 }
 
 /// Catches a box that is skipped though a ray meets what is in it, and a tie that the order of the
-/// search decides, in trees of few levels.
+/// search decides, in hierarchies of few levels.
 #[test]
 fn a_hundred_primitives() {
     crowds_agree(100, (24, 18), 0..6);
 }
 
-/// Catches the same in deeper trees.
+/// Catches the same in deeper hierarchies.
 #[test]
 fn a_thousand_primitives() {
     crowds_agree(1000, (24, 18), 6..8);
@@ -80,7 +80,7 @@ fn closed_meshes() {
     }
 }
 
-/// Catches a threshold that leaves a primitive out of the tree or the list: every count around it.
+/// Catches a threshold that leaves a primitive out of the BVH or the list: every count around it.
 #[test]
 fn every_small_count() {
     for count in 1..=40 {
@@ -92,7 +92,7 @@ fn every_small_count() {
 }
 
 /// Catches a split that never ends, and an order that nothing decides: everything in one place.
-/// From some number on such a tree is too deep to be used.
+/// From some number on such a BVH is too deep to be used.
 #[test]
 fn one_primitive_many_times() {
     for (shape, count) in [Shape::Sphere, Shape::Triangle, Shape::Cylinder]
