@@ -1,8 +1,8 @@
 //! The colour that a ray brings back: Whitted's recursion (An Improved Illumination Model for
 //! Shaded Display, 1980) as a loop, since a mirror sends on just one ray.
 
-use crate::accel::behind_culling::in_front;
-use crate::accel::cones::Bundle;
+use crate::accel::behind_culling::cull_behind;
+use crate::accel::cones::ConeSet;
 use crate::accel::occluders::Occluders;
 use crate::accel::plane_culling::hiding_planes;
 use crate::accel::primitives::{Hit, Primitives};
@@ -24,9 +24,9 @@ pub(crate) struct World<S, F> {
     materials: Vec<Material<S>>,
     pub(crate) lights: Vec<Light<S>>,
     /// What rays from the eye may meet; else anything.
-    pub(crate) eye: Option<Bundle<S>>,
+    pub(crate) eye: Option<ConeSet<S>>,
     /// What they may meet next after a plane that mirrors, by its number; else anything.
-    mirrored_eyes: Vec<Option<Bundle<S>>>,
+    mirrored_eyes: Vec<Option<ConeSet<S>>>,
     background: Vector<S>,
     /// The most bounces: 0 if nothing mirrors.
     pub(crate) max_reflections: u32,
@@ -55,31 +55,31 @@ impl<S: Scalar, F: Family> World<S, F> {
         // What is left out rests on the formulas' error bounds.
         let search = if F::FAITHFUL { search } else { Search::Exhaustive };
         let scene = match (eye, search) {
-            (Some(_), Search::Auto) => &in_front(scene, S::ROUNDOFF),
+            (Some(_), Search::Auto) => &cull_behind(scene, S::ROUNDOFF),
             _ => scene,
         };
         let mut primitives = Primitives::new(scene, search);
-        let cones = search == Search::Auto && primitives.leaves().is_none();
-        if cones && eye.is_some() {
-            primitives.enclose_triangles(scene);
+        let use_cones = search == Search::Auto && primitives.leaves().is_none();
+        if use_cones && eye.is_some() {
+            primitives.bound_triangles(scene);
         }
-        let bundle = |point: DVec3| cones.then(|| Bundle::new(scene, point));
+        let cones_from = |point: DVec3| use_cones.then(|| ConeSet::new(scene, point));
         // Formulas that let a ray slip through a plane may bring it anywhere.
         let confined = eye.filter(|_| F::FAITHFUL);
         let mirrors = scene.materials.iter().any(|material| material.reflection > 0.0);
         let shining = scene.lights.iter().filter(|light| light.color * light.power != DVec3::ZERO);
         let lights = shining.filter_map(|light| {
             let planes = hiding_planes(scene, light.position, confined, S::ROUNDOFF)?;
-            Some(Light::new(light, Occluders { planes, cones: bundle(light.position) }))
+            Some(Light::new(light, Occluders { planes, cones: cones_from(light.position) }))
         });
         let mirrored_eye = |plane: &Plane| {
             let mirror = scene.materials[plane.material].reflection > 0.0;
-            eye.filter(|_| cones && mirror).map(|eye| Bundle::mirrored(scene, eye, plane))
+            eye.filter(|_| use_cones && mirror).map(|eye| ConeSet::mirrored(scene, eye, plane))
         };
         Self {
             mirrored_eyes: scene.planes.iter().map(mirrored_eye).collect(),
             lights: lights.collect(),
-            eye: eye.and_then(bundle),
+            eye: eye.and_then(cones_from),
             primitives,
             materials: scene.materials.iter().map(Material::new).collect(),
             background: Vector::rounded(scene.render.background),
@@ -102,12 +102,12 @@ impl<S: Scalar, F: Family> World<S, F> {
         from_eye: bool,
     ) -> Traced<L> {
         let (zero, one) = (L::literal(0.0), L::literal(1.0));
-        let mut bundle = self.eye.as_ref().filter(|_| from_eye).map(|eye| (eye, zero));
+        let mut cones = self.eye.as_ref().filter(|_| from_eye).map(|eye| (eye, zero));
         let mut color = Vector::zero();
         let mut share = one;
         let mut trail = L::splat_index(0);
         for bounce in 0..=self.max_reflections {
-            let hit = self.primitives.nearest::<L, F>(&ray, active, bundle.take());
+            let hit = self.primitives.nearest::<L, F>(&ray, active, cones.take());
             let missed = active & !hit.exists();
             color = Vector::select(missed, color + Vector::splat(self.background) * share, color);
             active = active & hit.exists();
@@ -129,7 +129,7 @@ impl<S: Scalar, F: Family> World<S, F> {
                 break;
             }
             if from_eye && bounce == 0 {
-                bundle = self.mirrored_eye::<L>(&hit, active).map(|eye| (eye, hit.t));
+                cones = self.mirrored_eye::<L>(&hit, active).map(|eye| (eye, hit.t));
             }
             share = share * surface.finish.reflection;
             ray = mirrored(&ray, &surface.at);
@@ -143,7 +143,7 @@ impl<S: Scalar, F: Family> World<S, F> {
         &self,
         hit: &Hit<L>,
         active: L::Mask,
-    ) -> Option<&Bundle<S>> {
+    ) -> Option<&ConeSet<S>> {
         let number = L::first_index(active, hit.primitive)?;
         let others = active & !L::index_equals(hit.primitive, number);
         self.mirrored_eyes.get(number as usize).filter(|_| !others.any())?.as_ref()

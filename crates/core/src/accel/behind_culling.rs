@@ -10,7 +10,7 @@ use std::borrow::Cow;
 
 /// The scene without the spheres, triangles and cylinders that are behind all that its camera's
 /// rays reach. Those that remain keep their order, which decides between equal distances.
-pub(crate) fn in_front(scene: &Scene, roundoff: f64) -> Cow<'_, Scene> {
+pub(crate) fn cull_behind(scene: &Scene, roundoff: f64) -> Cow<'_, Scene> {
     if scene.materials.iter().any(|material| material.reflection > 0.0) {
         return Cow::Borrowed(scene);
     }

@@ -8,7 +8,7 @@ use crate::simd::lane::{Lane, Scalar};
 use crate::simd::vector::Vector;
 
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Enclosure<S> {
+pub(crate) struct BoundingSphere<S> {
     center: Vector<S>,
     radius: S,
     /// The largest magnitude of a coordinate.
@@ -18,7 +18,7 @@ pub(crate) struct Enclosure<S> {
 /// A radius whose square no number type loses.
 const SMALLEST: f64 = 1e-15;
 
-impl<S: Scalar> Enclosure<S> {
+impl<S: Scalar> BoundingSphere<S> {
     pub(crate) fn new(triangle: &scene::Triangle) -> Self {
         let (center, radius) = triangle.around();
         let radius = radius.max(SMALLEST);
@@ -33,7 +33,7 @@ impl<S: Scalar> Enclosure<S> {
     /// the centre is known to 17 roundings of the coordinates; a hit is off by no more than the
     /// margin has left, barring underflow.
     #[inline(always)]
-    pub(crate) fn may_meet<L: Lane<Scalar = S>>(&self, ray: &Ray<L>) -> L::Mask {
+    pub(crate) fn may_hit<L: Lane<Scalar = S>>(&self, ray: &Ray<L>) -> L::Mask {
         let Vector { x, y, z } = ray.origin.abs();
         let farthest = x.max(y).max(z);
         let margin = (farthest + L::splat(self.reach)) * L::literal(MARGIN * S::ROUNDOFF);
@@ -84,14 +84,17 @@ mod tests {
                 );
                 let hit = t.lt(miss());
                 assert!(
-                    !hit || Enclosure::<S>::new(&triangle).may_meet(&grazing),
+                    !hit || BoundingSphere::<S>::new(&triangle).may_hit(&grazing),
                     "{triangle:?} {grazing:?}"
                 );
                 hits += usize::from(hit);
             });
             let roundings = 1e3 * S::ROUNDOFF * (corner.abs().max_element() + 1e3 * size);
             let outside = ray(corner + outward * (0.1 * radius + roundings));
-            assert!(!Enclosure::<S>::new(&triangle).may_meet(&outside), "{triangle:?} {outside:?}");
+            assert!(
+                !BoundingSphere::<S>::new(&triangle).may_hit(&outside),
+                "{triangle:?} {outside:?}"
+            );
         }
         assert!(hits > 500, "{hits}");
     }

@@ -16,7 +16,7 @@ use glam::DVec3;
 /// A cone for each primitive that is not a plane: spheres, triangles, cylinders, each in file
 /// order.
 #[derive(Clone, Debug)]
-pub(crate) struct Bundle<S> {
+pub(crate) struct ConeSet<S> {
     blocks: Vec<Block<S>>,
     /// What a unit of a ray's length adds to its cosine with all axes: its end is known the less
     /// exactly, the farther it is, and this counts the more, the nearer a primitive is to the
@@ -58,7 +58,7 @@ const SLACK: f64 = 1.0 / 1024.0;
 /// Of a cone that holds all directions.
 const EVERYTHING: f64 = -4.0;
 
-impl<S: Scalar> Bundle<S> {
+impl<S: Scalar> ConeSet<S> {
     /// The cones of `scene`'s primitives, seen from `point`.
     pub(crate) fn new(scene: &Scene, point: DVec3) -> Self {
         Self::around(scene, point, 0.0)
@@ -99,7 +99,7 @@ impl<S: Scalar> Bundle<S> {
     /// know. The rays' unit directions away from the point, and their lengths, are `(direction,
     /// length)`.
     #[inline(always)]
-    pub(crate) fn met<L: Lane<Scalar = S>>(
+    pub(crate) fn candidates<L: Lane<Scalar = S>>(
         &self,
         (direction, length): (Vector<L>, L),
         mut wanted: L::Mask,
@@ -112,18 +112,18 @@ impl<S: Scalar> Bundle<S> {
         let together = !(wanted & !(close & widening.le(L::literal(SLACK)))).any();
         let one_in_f32 = Vector::splat(Vector::new(x.to_f32(), y.to_f32(), z.to_f32()));
         for (number, block) in self.blocks.iter().enumerate() {
-            let mut candidates = (1 << block.cones.len()) - 1;
+            let mut left = (1 << block.cones.len()) - 1;
             if together {
-                candidates &= block.wider.holds(one_in_f32, Lane::literal(0.0)).bits();
+                left &= block.wider.holds(one_in_f32, Lane::literal(0.0)).bits();
             }
-            while candidates != 0 {
-                let i = candidates.trailing_zeros() as usize;
-                candidates &= candidates - 1;
+            while left != 0 {
+                let i = left.trailing_zeros() as usize;
+                left &= left - 1;
                 let cone = &block.cones[i];
                 let cone = Cone { axis: Vector::splat(cone.axis), cosine: L::splat(cone.cosine) };
-                let met = wanted & cone.holds(direction, widening);
-                if met.any() {
-                    wanted = found(number * Eight::LANES + i, met);
+                let inside = wanted & cone.holds(direction, widening);
+                if inside.any() {
+                    wanted = found(number * Eight::LANES + i, inside);
                 }
             }
         }
@@ -194,7 +194,7 @@ mod tests {
         let (mut together, mut shown) = (0, 0);
         for _ in 0..100_000 {
             let spheres: [_; 11] = from_fn(|_| (place() * 4.0 - 2.0, 0.1 + place().x * 0.6));
-            let bundle = Bundle::<L::Scalar>::of(spheres.into_iter(), place());
+            let cones = ConeSet::<L::Scalar>::of(spheres.into_iter(), place());
             let (middle, apart) = ((place() - 0.5).normalize(), 0.05 + place().x * 0.025);
             let aside = |lane: usize| {
                 if lane == 0 { DVec3::ZERO } else { (place() - 0.5).normalize() * apart }
@@ -206,19 +206,19 @@ mod tests {
             let all = L::first_lanes(L::LANES);
 
             let mut found = Vec::new();
-            bundle.met((direction, length), all, |i, met| {
-                found.push((i, met.bits()));
+            cones.candidates((direction, length), all, |i, inside| {
+                found.push((i, inside.bits()));
                 all
             });
-            let widening = length * L::splat(bundle.widening);
-            let cones = bundle.blocks.iter().flat_map(|block| &block.cones);
-            let expected: Vec<(usize, u32)> = (cones.enumerate())
+            let widening = length * L::splat(cones.widening);
+            let all_cones = cones.blocks.iter().flat_map(|block| &block.cones);
+            let expected: Vec<(usize, u32)> = (all_cones.enumerate())
                 .map(|(i, cone)| {
                     let cone =
                         Cone { axis: Vector::splat(cone.axis), cosine: L::splat(cone.cosine) };
                     (i, cone.holds(direction, widening).bits())
                 })
-                .filter(|&(_, met)| met != 0)
+                .filter(|&(_, inside)| inside != 0)
                 .collect();
             assert_eq!(found, expected);
             together +=
@@ -234,17 +234,21 @@ mod tests {
     /// from it as may be and on the far side.
     fn the_widest_cone_holds_the_farthest_ray<L: Lane>() {
         for radius in [0.01, 0.1, 0.5, 0.9] {
-            let bundle = Bundle::<L::Scalar>::of([(DVec3::Z, radius)].into_iter(), DVec3::ZERO);
-            let edge = (bundle.blocks[0].cones[0].cosine.to_f64() - 0.98 * SLACK).acos();
+            let cones = ConeSet::<L::Scalar>::of([(DVec3::Z, radius)].into_iter(), DVec3::ZERO);
+            let edge = (cones.blocks[0].cones[0].cosine.to_f64() - 0.98 * SLACK).acos();
             let rays =
                 [edge + 0.999 * SPREAD.asin(), edge].map(|angle| [angle.sin(), 0.0, angle.cos()]);
             let of = |axis: usize| L::from_fn(|lane| Scalar::from_f64(rays[lane.min(1)][axis]));
-            let length = L::literal(0.99 * SLACK / bundle.widening.to_f64());
+            let length = L::literal(0.99 * SLACK / cones.widening.to_f64());
             let mut found = Vec::new();
-            bundle.met((Vector::new(of(0), of(1), of(2)), length), L::first_lanes(2), |i, met| {
-                found.push((i, met.bits()));
-                met
-            });
+            cones.candidates(
+                (Vector::new(of(0), of(1), of(2)), length),
+                L::first_lanes(2),
+                |i, inside| {
+                    found.push((i, inside.bits()));
+                    inside
+                },
+            );
             assert_eq!(found, [(0, 0b10)], "radius {radius}");
         }
     }

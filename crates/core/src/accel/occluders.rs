@@ -1,6 +1,6 @@
 //! The primitives that may lie between a light and the points it lights.
 
-use super::cones::Bundle;
+use super::cones::ConeSet;
 
 /// The primitives that a shadow ray to one light has to try.
 #[derive(Clone, Debug)]
@@ -9,5 +9,5 @@ pub(crate) struct Occluders<S> {
     pub(crate) planes: Vec<u32>,
     /// The direction cones of all other primitives, seen from the light. Without cones each of
     /// them may be in the way.
-    pub(crate) cones: Option<Bundle<S>>,
+    pub(crate) cones: Option<ConeSet<S>>,
 }

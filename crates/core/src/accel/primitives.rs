@@ -1,9 +1,9 @@
 //! All primitives of a scene, and the two questions a ray asks of them: what is nearest, and is
 //! anything in between.
 
-use crate::accel::bounding_sphere::Enclosure;
+use crate::accel::bounding_sphere::BoundingSphere;
 use crate::accel::bvh::Bvh;
-use crate::accel::cones::Bundle;
+use crate::accel::cones::ConeSet;
 use crate::accel::occluders::Occluders;
 use crate::execution::Search;
 use crate::formulas::{Aim, Family, LightPath};
@@ -37,7 +37,7 @@ pub(crate) struct Primitives<S> {
     bvh: Option<Bvh<S>>,
     /// Around each triangle, where the nearest hit is asked for rays of unit direction only and no
     /// tree finds it.
-    around_triangles: Vec<Enclosure<S>>,
+    triangle_bounds: Vec<BoundingSphere<S>>,
     /// The material of each primitive, by its number.
     materials: Vec<usize>,
 }
@@ -96,7 +96,7 @@ impl<S: Scalar> Primitives<S> {
                 },
             ],
             bvh: None,
-            around_triangles: vec![],
+            triangle_bounds: vec![],
             materials,
         };
         if search == Search::Auto {
@@ -116,8 +116,8 @@ impl<S: Scalar> Primitives<S> {
 
     /// From now on all rays of which the nearest hit is asked have unit direction. No shadow ray
     /// asks what it comes near: where there are enclosures, lights have bundles.
-    pub(crate) fn enclose_triangles(&mut self, scene: &Scene) {
-        self.around_triangles = scene.triangles.iter().map(Enclosure::new).collect();
+    pub(crate) fn bound_triangles(&mut self, scene: &Scene) {
+        self.triangle_bounds = scene.triangles.iter().map(BoundingSphere::new).collect();
     }
 
     /// Puts a tree over the bounded primitives, if there are enough of them.
@@ -184,7 +184,7 @@ impl<S: Scalar> Primitives<S> {
         &self,
         ray: &Ray<L>,
         wanted: L::Mask,
-        from: Option<(&Bundle<S>, L)>,
+        from: Option<(&ConeSet<S>, L)>,
     ) -> Hit<L> {
         let mut nearest = Hit { t: miss(), primitive: L::splat_index(0) };
         for (number, plane) in (0..).zip(&self.planes) {
@@ -198,10 +198,10 @@ impl<S: Scalar> Primitives<S> {
                     (wanted, nearest.t)
                 });
             }),
-            (_, Some((bundle, distance))) if F::FAITHFUL => {
-                bundle.met((ray.direction, distance), wanted, |i, met| {
+            (_, Some((cones, distance))) if F::FAITHFUL => {
+                cones.candidates((ray.direction, distance), wanted, |i, inside| {
                     let number = self.spheres.first + i as u32;
-                    nearest.offer::<true>(number, self.bounded::<L, F>(i, ray, met));
+                    nearest.offer::<true>(number, self.bounded::<L, F>(i, ray, inside));
                     wanted
                 });
             }
@@ -233,7 +233,7 @@ impl<S: Scalar> Primitives<S> {
         if !F::FAITHFUL {
             return leaf(triangles, &others_aim, wanted);
         }
-        ray.by_axis(self.near_triangles(ray, wanted), |order, wanted| {
+        ray.by_axis(self.near_any_triangle(ray, wanted), |order, wanted| {
             leaf(
                 triangles,
                 &Aim { triangle: triangle::Aim::new(ray, order), ..others_aim },
@@ -244,9 +244,9 @@ impl<S: Scalar> Primitives<S> {
 
     /// The rays of `wanted` that come near any triangle, or all if that is not known.
     #[inline(always)]
-    fn near_triangles<L: Lane<Scalar = S>>(&self, ray: &Ray<L>, wanted: L::Mask) -> L::Mask {
-        let Some((first, others)) = self.around_triangles.split_first() else { return wanted };
-        wanted & others.iter().fold(first.may_meet(ray), |near, around| near | around.may_meet(ray))
+    fn near_any_triangle<L: Lane<Scalar = S>>(&self, ray: &Ray<L>, wanted: L::Mask) -> L::Mask {
+        let Some((first, others)) = self.triangle_bounds.split_first() else { return wanted };
+        wanted & others.iter().fold(first.may_hit(ray), |near, around| near | around.may_hit(ray))
     }
 
     /// Where rays of `wanted` hit the primitive in place `i` of all that are not planes, without a
@@ -350,9 +350,9 @@ impl<S: Scalar> Primitives<S> {
                     (wanted & free, limit)
                 });
             }),
-            (_, Some(bundle)) if F::FAITHFUL => {
-                bundle.met((-path.to_light, path.distance), free, |i, met| {
-                    free = free & !self.bounded::<L, F>(i, ray, met).lt(limit);
+            (_, Some(cones)) if F::FAITHFUL => {
+                cones.candidates((-path.to_light, path.distance), free, |i, inside| {
+                    free = free & !self.bounded::<L, F>(i, ray, inside).lt(limit);
                     free
                 });
             }

@@ -54,15 +54,15 @@ impl Family for Textbook {
         let [a, b, c] = triangle.vertices.map(Vector::splat);
         let normal = Vector::splat(triangle.normal);
         let t = plane_root(a, normal, ray);
-        let in_front = wanted & beyond_offset(t);
-        if !in_front.any() {
+        let beyond = wanted & beyond_offset(t);
+        if !beyond.any() {
             return miss();
         }
         let point = ray.at(t);
         let within = |from: Vector<L>, to: Vector<L>| {
             L::literal(0.0).le(normal.dot((to - from).cross(point - from)))
         };
-        L::select(in_front & within(a, b) & within(b, c) & within(c, a), t, miss())
+        L::select(beyond & within(a, b) & within(b, c) & within(c, a), t, miss())
     }
 
     #[inline(always)]

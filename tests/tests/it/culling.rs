@@ -1,4 +1,4 @@
-//! What planes keep apart and what cones and enclosures leave out changes no picture: in scenes of
+//! Culling by planes, cones and bounding spheres changes no picture: in scenes of
 //! a few primitives the search has the bits of trying everything, also where eyes and lights stand
 //! in planes, on surfaces and inside of things, and where rays run along them.
 
