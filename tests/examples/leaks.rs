@@ -133,7 +133,7 @@ fn lose(meshes: &[Placed], rays: u64, options: &Options, number: u64) -> Leaks {
 impl Leaks {
     fn look_at(&mut self, number: u64, mesh: &Placed, random: &mut SplitMix64) {
         let ray = mesh.ray(random);
-        let hit = mesh.caster.nearest_hit(ray.origin, ray.direction);
+        let hit = mesh.caster.closest_hit(ray.origin, ray.direction);
         if hit.is_none_or(|hit| (hit.t - 1.0).abs() > TOLERANCE) {
             self.count += 1;
             self.first.get_or_insert((number, ray));

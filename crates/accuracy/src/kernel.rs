@@ -38,7 +38,7 @@ impl Prepared {
     /// The `t` of the nearest hit that the kernel which renders finds, in its precision.
     #[must_use]
     pub fn hit(&self) -> Option<f64> {
-        let hit = self.caster.as_ref()?.nearest_hit(self.origin, self.direction)?;
+        let hit = self.caster.as_ref()?.closest_hit(self.origin, self.direction)?;
         Some(match self.precision {
             Precision::F32 => f64::from(hit.t as f32),
             Precision::F64 => hit.t,

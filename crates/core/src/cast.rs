@@ -42,15 +42,15 @@ impl Caster {
         Self(select(scene.render.arithmetic, scene))
     }
 
-    /// The nearest hit of the ray from `origin` in `direction`, which may have any length but 0.
+    /// Returns the closest hit of the ray from `origin` in `direction`, which may have any length but 0.
     /// Both are first rounded to the precision. A zero direction hits nothing, nor does what is not
     /// finite.
     #[must_use]
-    pub fn nearest_hit(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
+    pub fn closest_hit(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
         if !(origin.is_finite() && direction.is_finite()) {
             return None;
         }
-        self.0.nearest_hit(origin, direction)
+        self.0.closest_hit(origin, direction)
     }
 
     /// The colour, linear and not clamped, that comes back along the ray from `origin` in
@@ -70,12 +70,12 @@ impl Compiled for &Scene {
 }
 
 pub(crate) trait Cast {
-    fn nearest_hit(&self, origin: DVec3, direction: DVec3) -> Option<Hit>;
+    fn closest_hit(&self, origin: DVec3, direction: DVec3) -> Option<Hit>;
     fn color(&self, origin: DVec3, direction: DVec3) -> [f64; 3];
 }
 
 impl<S: Scalar, F: Family> Cast for World<S, F> {
-    fn nearest_hit(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
+    fn closest_hit(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
         // The longest component is brought near 1 by a power of two, which rounds nothing: the
         // squares of a very long or short direction would over- or underflow. The renderer's own
         // are unit, or reach from a point to a light.
@@ -84,7 +84,7 @@ impl<S: Scalar, F: Family> Cast for World<S, F> {
             origin: Vector::rounded(origin),
             direction: Vector::rounded(near_one(direction)),
         };
-        let hit = self.primitives.nearest::<S, F>(&ray, true, None);
+        let hit = self.primitives.closest_hit::<S, F>(&ray, true, None);
         hit.exists().then(|| {
             let at = self.primitives.surface::<S, F>(hit.primitive, &ray, hit.t);
             Hit {

@@ -107,7 +107,7 @@ impl<S: Scalar, F: Family> World<S, F> {
         let mut share = one;
         let mut trail = L::splat_index(0);
         for bounce in 0..=self.max_reflections {
-            let hit = self.primitives.nearest::<L, F>(&ray, active, cones.take());
+            let hit = self.primitives.closest_hit::<L, F>(&ray, active, cones.take());
             let missed = active & !hit.exists();
             color = Vector::select(missed, color + Vector::splat(self.background) * share, color);
             active = active & hit.exists();
@@ -212,7 +212,7 @@ impl<S: Scalar, F: Family> World<S, F> {
             let path = LightPath { start, toward, to_light, distance, inverse_distance, reach };
             let (shadow_ray, limit) = F::shadow_ray(&path);
             let lit = above
-                & !self.primitives.blocked::<L, F>(
+                & !self.primitives.occluded::<L, F>(
                     &shadow_ray,
                     limit,
                     above,

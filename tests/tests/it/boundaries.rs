@@ -20,7 +20,7 @@ fn rims_and_outlines_belong_to_a_cylinder() {
     let scene = Scene { cylinders: vec![tube], ..empty() };
     for precision in PRECISIONS {
         let caster = Caster::new(&scene.with_arithmetic(precision)).expect("a sound scene");
-        let t = |x: f64, y: f64| caster.nearest_hit(v(x, y, 0.0), -DVec3::Z).map(|hit| hit.t);
+        let t = |x: f64, y: f64| caster.closest_hit(v(x, y, 0.0), -DVec3::Z).map(|hit| hit.t);
         assert_eq!((t(0.0, -1.0), t(0.0, 1.0)), (Some(1.0), Some(1.0)), "{precision}");
         assert_eq!((t(1.0, 0.0), t(-1.0, 0.0)), (Some(2.0), Some(2.0)), "{precision}");
     }

@@ -113,7 +113,7 @@ fn the_tracer_s_rays_hit_where_they_should() {
         let (origin, direction) = (witness.ray.origin, witness.ray.direction);
         let found = Caster::new(&scene.with_arithmetic(precision))
             .expect(&what)
-            .nearest_hit(origin, direction);
+            .closest_hit(origin, direction);
         let (Some(hit), Some(expected)) = (found, witness.expected) else {
             assert_eq!(found.is_some(), witness.expected.is_some(), "{what}: {found:?}");
             continue;

@@ -139,7 +139,7 @@ fn things_of(scene: &Scene) -> Vec<Primitive> {
 fn hit(scene: &Scene, ray: &Ray, precision: Precision) -> Option<Hit> {
     Caster::new(&scene.with_arithmetic(precision))
         .expect("a sound scene")
-        .nearest_hit(ray.origin, ray.direction)
+        .closest_hit(ray.origin, ray.direction)
 }
 
 fn hit_alone(thing: Primitive, ray: &Ray, precision: Precision) -> Option<Hit> {

@@ -208,7 +208,7 @@ fn the_far_wall_is_seen_through_the_open_end() {
 }
 
 #[test]
-fn the_nearest_hit_is_in_front() {
+fn the_closest_hit_is_in_front() {
     let scene = Scene {
         spheres: vec![ball([0.0, 0.0, 3.0], 1.0, RED), ball([0.0, 0.0, -9.0], 1.0, GREEN)],
         planes: vec![Plane {

@@ -17,7 +17,7 @@ fn v(x: f64, y: f64, z: f64) -> DVec3 {
 fn t(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<f64> {
     Caster::new(&scene.with_arithmetic(TEXTBOOK))
         .expect("a sound scene")
-        .nearest_hit(origin, direction)
+        .closest_hit(origin, direction)
         .map(|hit| hit.t)
 }
 
@@ -105,10 +105,10 @@ fn both_families_hit_the_same() {
             let (origin, direction) = (d, target - d);
             let robust = Caster::new(&scene.with_arithmetic(Precision::F64))
                 .expect("a sound scene")
-                .nearest_hit(origin, direction);
+                .closest_hit(origin, direction);
             let found = Caster::new(&scene.with_arithmetic(TEXTBOOK))
                 .expect("a sound scene")
-                .nearest_hit(origin, direction);
+                .closest_hit(origin, direction);
             if robust.is_some_and(|hit| hit.t < 2e-3) {
                 continue;
             }

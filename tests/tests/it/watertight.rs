@@ -57,7 +57,7 @@ proptest! {
         let origin = (from + offset) * scale;
         let direction = scale * (aim - from);
         for precision in [Precision::F32, Precision::F64] {
-            let hit = caster(&scene, precision).nearest_hit(origin, direction);
+            let hit = caster(&scene, precision).closest_hit(origin, direction);
             prop_assert!(hit.is_some(), "{precision}: from {origin} along {direction}");
             // A leak to a triangle behind would be nearer or farther.
             let t = hit.map_or(0.0, |hit| hit.t);
@@ -95,7 +95,7 @@ fn no_ray_leaves_a_cube_through_its_symmetries() {
     for from in grid().map(|point| 0.5 * point) {
         for aim in grid().filter(|point| point.abs().max_element() == 1.0) {
             for precision in [Precision::F32, Precision::F64] {
-                let hit = caster(&scene, precision).nearest_hit(from, aim - from);
+                let hit = caster(&scene, precision).closest_hit(from, aim - from);
                 let hit =
                     hit.unwrap_or_else(|| panic!("{precision}: from {from} to {aim}: a leak"));
                 assert!((hit.t - 1.0).abs() < 1e-6, "{precision}: from {from} to {aim}: {hit:?}");
@@ -118,7 +118,7 @@ fn a_ray_beside_an_edge_hits_one_side() {
             {
                 for vertices in [[from, to, aside], [to, from, aside], [aside, from, to]] {
                     let hit = caster(&scene_of(&[vertices]), precision)
-                        .nearest_hit(DVec3::ZERO, DVec3::Z);
+                        .closest_hit(DVec3::ZERO, DVec3::Z);
                     assert_eq!(hit.is_some(), hits, "{precision}: {vertices:?}");
                 }
             }

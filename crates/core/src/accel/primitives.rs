@@ -1,4 +1,4 @@
-//! All primitives of a scene, and the two questions a ray asks of them: what is nearest, and is
+//! All primitives of a scene, and the two questions a ray asks of them: what is closest, and is
 //! anything in between.
 
 use crate::accel::bounding_sphere::BoundingSphere;
@@ -35,14 +35,14 @@ pub(crate) struct Primitives<S> {
     triangles_and_others: [Leaf; 2],
     /// Over these, where there are enough of them.
     bvh: Option<Bvh<S>>,
-    /// Around each triangle, where the nearest hit is asked for rays of unit direction only and no
+    /// Around each triangle, where the closest hit is asked for rays of unit direction only and no
     /// tree finds it.
     triangle_bounds: Vec<BoundingSphere<S>>,
     /// The material of each primitive, by its number.
     materials: Vec<usize>,
 }
 
-/// The nearest hit of a ray.
+/// The closest hit of a ray.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Hit<L: Lane> {
     /// Infinite where nothing is hit.
@@ -114,7 +114,7 @@ impl<S: Scalar> Primitives<S> {
         self.bvh.as_ref().map(Bvh::leaves)
     }
 
-    /// From now on all rays of which the nearest hit is asked have unit direction. No shadow ray
+    /// From now on all rays of which the closest hit is asked have unit direction. No shadow ray
     /// asks what it comes near: where there are enclosures, lights have bundles.
     pub(crate) fn bound_triangles(&mut self, scene: &Scene) {
         self.triangle_bounds = scene.triangles.iter().map(BoundingSphere::new).collect();
@@ -180,36 +180,36 @@ impl<S: Scalar> Primitives<S> {
     /// that all come from one point `from` knows what they may meet, and how far away from it they
     /// start; their directions are of unit length.
     #[inline(always)]
-    pub(crate) fn nearest<L: Lane<Scalar = S>, F: Family>(
+    pub(crate) fn closest_hit<L: Lane<Scalar = S>, F: Family>(
         &self,
         ray: &Ray<L>,
         wanted: L::Mask,
         from: Option<(&ConeSet<S>, L)>,
     ) -> Hit<L> {
-        let mut nearest = Hit { t: miss(), primitive: L::splat_index(0) };
+        let mut closest = Hit { t: miss(), primitive: L::splat_index(0) };
         for (number, plane) in (0..).zip(&self.planes) {
-            nearest.offer::<true>(number, F::plane(plane, ray));
+            closest.offer::<true>(number, F::plane(plane, ray));
         }
         match (&self.bvh, from) {
             (Some(bvh), _) if F::FAITHFUL => ray.by_heading(wanted, |heading, wanted| {
                 let aim = self.aim(ray, Some(heading.order));
-                bvh.traverse(ray, heading, wanted, nearest.t, |leaf, reached| {
-                    self.nearest_in::<L, F>(leaf, ray, &aim, reached, &mut nearest);
-                    (wanted, nearest.t)
+                bvh.traverse(ray, heading, wanted, closest.t, |leaf, reached| {
+                    self.closest_hit_in_leaf::<L, F>(leaf, ray, &aim, reached, &mut closest);
+                    (wanted, closest.t)
                 });
             }),
             (_, Some((cones, distance))) if F::FAITHFUL => {
                 cones.candidates((ray.direction, distance), wanted, |i, inside| {
                     let number = self.spheres.first + i as u32;
-                    nearest.offer::<true>(number, self.bounded::<L, F>(i, ray, inside));
+                    closest.offer::<true>(number, self.bounded_primitive::<L, F>(i, ray, inside));
                     wanted
                 });
             }
             _ => self.by_axis::<L, F>(ray, wanted, |leaf, aim, wanted| {
-                self.nearest_in::<L, F>(leaf, ray, aim, wanted, &mut nearest);
+                self.closest_hit_in_leaf::<L, F>(leaf, ray, aim, wanted, &mut closest);
             }),
         }
-        nearest
+        closest
     }
 
     /// Shows `leaf` all bounded primitives: triangles for each axis along which rays are longest,
@@ -252,7 +252,7 @@ impl<S: Scalar> Primitives<S> {
     /// Where rays of `wanted` hit the primitive in place `i` of all that are not planes, without a
     /// tree.
     #[inline(always)]
-    fn bounded<L: Lane<Scalar = S>, F: Family>(
+    fn bounded_primitive<L: Lane<Scalar = S>, F: Family>(
         &self,
         mut i: usize,
         ray: &Ray<L>,
@@ -283,13 +283,13 @@ impl<S: Scalar> Primitives<S> {
         ray: &Ray<L>,
         wanted: L::Mask,
     ) -> L {
-        let mut nearest = miss();
+        let mut closest = miss();
         ray.by_axis(wanted, |order, wanted| {
             let aim = triangle::Aim::new(ray, order);
             let t = F::triangle(&self.triangles.shapes[i], ray, &aim, wanted);
-            nearest = L::select(wanted, t, nearest);
+            closest = L::select(wanted, t, closest);
         });
-        nearest
+        closest
     }
 
     #[inline(never)]
@@ -304,29 +304,29 @@ impl<S: Scalar> Primitives<S> {
 
     /// Tries every primitive of a leaf.
     #[inline(never)]
-    fn nearest_in<L: Lane<Scalar = S>, F: Family>(
+    fn closest_hit_in_leaf<L: Lane<Scalar = S>, F: Family>(
         &self,
         leaf: &Leaf,
         ray: &Ray<L>,
         aim: &Aim<L>,
         wanted: L::Mask,
-        nearest: &mut Hit<L>,
+        closest: &mut Hit<L>,
     ) {
         for (number, sphere) in self.spheres.range(&leaf.spheres) {
-            nearest.offer::<false>(number, F::sphere(sphere, ray, &aim.sphere, wanted));
+            closest.offer::<false>(number, F::sphere(sphere, ray, &aim.sphere, wanted));
         }
         for (number, triangle) in self.triangles.range(&leaf.triangles) {
-            nearest.offer::<false>(number, F::triangle(triangle, ray, &aim.triangle, wanted));
+            closest.offer::<false>(number, F::triangle(triangle, ray, &aim.triangle, wanted));
         }
         for (number, cylinder) in self.cylinders.range(&leaf.cylinders) {
-            nearest.offer::<false>(number, F::cylinder(cylinder, ray, &aim.cylinder, wanted));
+            closest.offer::<false>(number, F::cylinder(cylinder, ray, &aim.cylinder, wanted));
         }
     }
 
     /// The lanes of `wanted` whose ray, on the `path` to the light of these `occluders`, meets something
     /// before `limit`.
     #[inline(always)]
-    pub(crate) fn blocked<L: Lane<Scalar = S>, F: Family>(
+    pub(crate) fn occluded<L: Lane<Scalar = S>, F: Family>(
         &self,
         ray: &Ray<L>,
         limit: L,
@@ -334,39 +334,41 @@ impl<S: Scalar> Primitives<S> {
         path: &LightPath<L>,
         occluders: &Occluders<S>,
     ) -> L::Mask {
-        let mut free = wanted;
+        let mut clear = wanted;
         for &plane in &occluders.planes {
-            free = free & !F::plane(&self.planes[plane as usize], ray).lt(limit);
+            clear = clear & !F::plane(&self.planes[plane as usize], ray).lt(limit);
         }
-        if !free.any() {
+        if !clear.any() {
             return wanted;
         }
         match (&self.bvh, &occluders.cones) {
-            (Some(bvh), _) if F::FAITHFUL => ray.by_heading(free, |heading, wanted| {
+            (Some(bvh), _) if F::FAITHFUL => ray.by_heading(clear, |heading, wanted| {
                 let aim = self.aim(ray, Some(heading.order));
                 bvh.traverse(ray, heading, wanted, limit, |leaf, reached| {
-                    free =
-                        free & !(reached & !self.free_in::<L, F>(leaf, ray, &aim, limit, reached));
-                    (wanted & free, limit)
+                    clear = clear
+                        & !(reached
+                            & !self.unoccluded_in_leaf::<L, F>(leaf, ray, &aim, limit, reached));
+                    (wanted & clear, limit)
                 });
             }),
             (_, Some(cones)) if F::FAITHFUL => {
-                cones.candidates((-path.to_light, path.distance), free, |i, inside| {
-                    free = free & !self.bounded::<L, F>(i, ray, inside).lt(limit);
-                    free
+                cones.candidates((-path.to_light, path.distance), clear, |i, inside| {
+                    clear = clear & !self.bounded_primitive::<L, F>(i, ray, inside).lt(limit);
+                    clear
                 });
             }
-            _ => self.by_axis::<L, F>(ray, free, |leaf, aim, wanted| {
-                let reached = wanted & free;
-                free = free & !(reached & !self.free_in::<L, F>(leaf, ray, aim, limit, reached));
+            _ => self.by_axis::<L, F>(ray, clear, |leaf, aim, wanted| {
+                let reached = wanted & clear;
+                clear = clear
+                    & !(reached & !self.unoccluded_in_leaf::<L, F>(leaf, ray, aim, limit, reached));
             }),
         }
-        wanted & !free
+        wanted & !clear
     }
 
     /// The lanes of `wanted` that meet nothing of `leaf` before `limit`.
     #[inline(never)]
-    fn free_in<L: Lane<Scalar = S>, F: Family>(
+    fn unoccluded_in_leaf<L: Lane<Scalar = S>, F: Family>(
         &self,
         leaf: &Leaf,
         ray: &Ray<L>,
@@ -374,26 +376,26 @@ impl<S: Scalar> Primitives<S> {
         limit: L,
         wanted: L::Mask,
     ) -> L::Mask {
-        let mut free = wanted;
+        let mut clear = wanted;
         for (_, sphere) in self.spheres.range(&leaf.spheres) {
-            free = free & !F::sphere(sphere, ray, &aim.sphere, free).lt(limit);
-            if !free.any() {
-                return free;
+            clear = clear & !F::sphere(sphere, ray, &aim.sphere, clear).lt(limit);
+            if !clear.any() {
+                return clear;
             }
         }
         for (_, triangle) in self.triangles.range(&leaf.triangles) {
-            free = free & !F::triangle(triangle, ray, &aim.triangle, free).lt(limit);
-            if !free.any() {
-                return free;
+            clear = clear & !F::triangle(triangle, ray, &aim.triangle, clear).lt(limit);
+            if !clear.any() {
+                return clear;
             }
         }
         for (_, cylinder) in self.cylinders.range(&leaf.cylinders) {
-            free = free & !F::cylinder(cylinder, ray, &aim.cylinder, free).lt(limit);
-            if !free.any() {
-                return free;
+            clear = clear & !F::cylinder(cylinder, ray, &aim.cylinder, clear).lt(limit);
+            if !clear.any() {
+                return clear;
             }
         }
-        free
+        clear
     }
 
     /// The index of a primitive's material.
