@@ -11,7 +11,7 @@
 //! | `shadows of spheres`, ... | these, and from each hit to a light | each of the 8 |
 //! | `tree of N spheres` | from the eye | what the BVH leaves |
 //! | `tree of N mirrors` | these, and from each hit one in a direction of its own | what the BVH leaves |
-//! | `filter` | of the scene `room.toml`, by kind of anti-aliasing | what the search leaves |
+//! | `filter` | of the scene `room.toml`, by kind of anti-aliasing | what acceleration leaves |
 //!
 //! A ray's time has the shading of its hit in it. Criterion measures one bench after the other, and
 //! the machine's clock and its other processes change meanwhile: for counts that repeat see
@@ -24,15 +24,17 @@ use criterion::{
 };
 use rayweave_benches::{Kind, Probe, Rays, scene};
 use rayweave_core::scene::RenderSettings;
-use rayweave_core::{Arithmetic, Execution, Formulas, Lanes, Precision, Sampling, Scene, Search};
+use rayweave_core::{
+    Acceleration, Arithmetic, Execution, Formulas, Lanes, Precision, Sampling, Scene,
+};
 use std::time::Duration;
 
 fn kinds(criterion: &mut Criterion) {
     let both = [Formulas::Robust, Formulas::Textbook];
-    bench_rays(criterion, "empty scene", &Probe::empty(), Rays::FromEye, &both, Search::Exhaustive);
+    bench_rays(criterion, "empty scene", &Probe::empty(), Rays::FromEye, &both, Acceleration::None);
     for kind in Kind::ALL {
         let probe = Probe::of(kind, Rays::FromEye);
-        bench_rays(criterion, kind.name(), &probe, Rays::FromEye, &both, Search::Exhaustive);
+        bench_rays(criterion, kind.name(), &probe, Rays::FromEye, &both, Acceleration::None);
     }
 }
 
@@ -48,7 +50,7 @@ fn shadows(criterion: &mut Criterion) {
             &probe,
             Rays::AndShadows,
             &[Formulas::Robust],
-            Search::Exhaustive,
+            Acceleration::None,
         );
     }
 }
@@ -63,7 +65,7 @@ fn bvhs(criterion: &mut Criterion) {
                 &Probe::cloud(count, rays),
                 rays,
                 &[Formulas::Robust],
-                Search::Auto,
+                Acceleration::Auto,
             );
         }
     }
@@ -75,7 +77,7 @@ fn bench_rays(
     probe: &Probe,
     rays: Rays,
     formulas: &[Formulas],
-    search: Search,
+    acceleration: Acceleration,
 ) {
     let mut group = group(criterion, name);
     let count = if rays == Rays::FromEye { probe.pixels() } else { probe.pixels() + probe.hits() };
@@ -83,7 +85,7 @@ fn bench_rays(
     for &formulas in formulas {
         for precision in [Precision::F32, Precision::F64] {
             let arithmetic = Arithmetic { formulas, precision };
-            let execution = Execution { search, ..Execution::default() };
+            let execution = Execution { acceleration, ..Execution::default() };
             bench_lanes(
                 &mut group,
                 &format!("{formulas}/{precision}"),

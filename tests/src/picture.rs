@@ -1,22 +1,22 @@
 //! Pictures without any strategy: whatever is true of them is true of the work alone.
 
 use rayweave_contract::{Image, Rgb, Tile, Work};
-use rayweave_core::{Execution, Lanes, Precision, Scene, Search, tracer};
+use rayweave_core::{Acceleration, Execution, Lanes, Precision, Scene, tracer};
 use std::num::NonZeroU32;
 
 /// The execution that has nothing of the others': each ray for itself, and against each primitive.
 #[must_use]
 pub fn plain() -> Execution {
-    let (lanes, search) = (Lanes::One, Search::Exhaustive);
-    Execution { lanes, share_samples: false, search }
+    let (lanes, acceleration) = (Lanes::One, Acceleration::None);
+    Execution { lanes, share_samples: false, acceleration }
 }
 
 /// Every execution; the first is the plain one.
 #[must_use]
 pub fn executions() -> Vec<Execution> {
     let plain = plain();
-    let searches = [plain, Execution { search: Search::Auto, ..plain }];
-    let shared = searches
+    let accelerations = [plain, Execution { acceleration: Acceleration::Auto, ..plain }];
+    let shared = accelerations
         .into_iter()
         .flat_map(|e| [false, true].map(|s| Execution { share_samples: s, ..e }));
     shared.flat_map(|e| Lanes::ALL.map(|lanes| Execution { lanes, ..e })).collect()

@@ -1,6 +1,6 @@
 //! What a scene needs: found out once, before it is rendered.
 
-use crate::execution::{Execution, Search};
+use crate::execution::{Acceleration, Execution};
 use crate::formulas::{Compiled, Family, select};
 use crate::scene::{Scene, SceneError};
 use crate::simd::lane::Scalar;
@@ -48,14 +48,14 @@ impl Analysis {
     /// A scene that [`Scene::check`] rejects.
     pub fn of(scene: &Scene, execution: &Execution) -> Result<Self, SceneError> {
         scene.check()?;
-        Ok(select(scene.render.arithmetic, Looked { scene, search: execution.search }))
+        Ok(select(scene.render.arithmetic, Looked { scene, acceleration: execution.acceleration }))
     }
 }
 
 /// What an analysis is compiled for.
 struct Looked<'a> {
     scene: &'a Scene,
-    search: Search,
+    acceleration: Acceleration,
 }
 
 impl Compiled for Looked<'_> {
@@ -63,7 +63,7 @@ impl Compiled for Looked<'_> {
 
     fn compiled<S: Scalar, F: Family>(self) -> Analysis {
         let scene = self.scene;
-        let world = World::<S, F>::new(scene, Some(scene.camera.position), self.search);
+        let world = World::<S, F>::new(scene, Some(scene.camera.position), self.acceleration);
         let hiding_planes: Vec<usize> =
             world.lights.iter().map(|light| light.occluders.planes.len()).collect();
         let primitives =
@@ -151,8 +151,8 @@ mod tests {
         }
     }
 
-    fn analysis(spheres: usize, reflection: f64, search: Search) -> Analysis {
-        let execution = Execution { search, ..Execution::default() };
+    fn analysis(spheres: usize, reflection: f64, acceleration: Acceleration) -> Analysis {
+        let execution = Execution { acceleration, ..Execution::default() };
         Analysis::of(&scene(spheres, reflection), &execution).expect("a sound scene")
     }
 
@@ -160,32 +160,32 @@ mod tests {
     /// other way around.
     #[test]
     fn what_is_not_needed_is_left_out() {
-        let few = analysis(3, 0.0, Search::Auto);
+        let few = analysis(3, 0.0, Acceleration::Auto);
         assert_eq!((few.primitives, few.bounces, few.lights), ([1, 3, 0, 0], 0, (3, 1)));
         assert_eq!((few.hiding_planes.as_slice(), few.search), (&[0][..], HitSearch::Cones));
-        assert_eq!(analysis(3, 0.5, Search::Auto).bounces, 4);
+        assert_eq!(analysis(3, 0.5, Acceleration::Auto).bounces, 4);
         assert!(
-            matches!(analysis(100, 0.0, Search::Auto).search, HitSearch::Bvh { leaves } if leaves > 10)
+            matches!(analysis(100, 0.0, Acceleration::Auto).search, HitSearch::Bvh { leaves } if leaves > 10)
         );
-        assert_eq!(analysis(100, 0.0, Search::Exhaustive).search, HitSearch::BruteForce);
+        assert_eq!(analysis(100, 0.0, Acceleration::None).search, HitSearch::BruteForce);
     }
 
     /// Catches what is left out though a mirror, or the way to a light behind the eye, shows it;
     /// and what is not.
     #[test]
     fn what_is_behind_is_left_out() {
-        let behind = |reflection, light_z, search| {
+        let behind = |reflection, light_z, acceleration| {
             let mut scene = scene(3, reflection);
             scene.lights[0].position.z = light_z;
             scene.spheres[1].center.z = 10.0;
-            let execution = Execution { search, ..Execution::default() };
+            let execution = Execution { acceleration, ..Execution::default() };
             Analysis::of(&scene, &execution).expect("a sound scene").behind
         };
-        assert_eq!(behind(0.0, 9.0, Search::Auto), 1);
+        assert_eq!(behind(0.0, 9.0, Acceleration::Auto), 1);
         // The sphere reaches from 9.6 to 10.4.
-        assert_eq!(behind(0.0, 9.59, Search::Auto), 1);
-        assert_eq!(behind(0.0, 9.61, Search::Auto), 0);
-        assert_eq!(behind(0.1, 9.0, Search::Auto), 0);
-        assert_eq!(behind(0.0, 9.0, Search::Exhaustive), 0);
+        assert_eq!(behind(0.0, 9.59, Acceleration::Auto), 1);
+        assert_eq!(behind(0.0, 9.61, Acceleration::Auto), 0);
+        assert_eq!(behind(0.1, 9.0, Acceleration::Auto), 0);
+        assert_eq!(behind(0.0, 9.0, Acceleration::None), 0);
     }
 }

@@ -1,6 +1,6 @@
 //! Single rays through the kernel that renders, for tests and for whoever studies it.
 
-use crate::execution::Search;
+use crate::execution::Acceleration;
 use crate::formulas::{Compiled, Family, select};
 use crate::ray::Ray;
 use crate::scene::{Scene, SceneError, near_one};
@@ -65,7 +65,7 @@ impl Compiled for &Scene {
     type Output = Box<dyn Cast + Send + Sync>;
 
     fn compiled<S: Scalar, F: Family>(self) -> Self::Output {
-        Box::new(World::<S, F>::new(self, None, Search::Auto))
+        Box::new(World::<S, F>::new(self, None, Acceleration::Auto))
     }
 }
 

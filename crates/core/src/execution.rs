@@ -17,20 +17,22 @@ pub struct Execution {
     /// always shared.
     pub share_samples: bool,
     /// The primitives that a ray tries.
-    pub search: Search,
+    pub acceleration: Acceleration,
 }
 
-/// Which primitives a ray tries. With the textbook's formulas it is always each of them: what they
-/// would find there depends on where they look.
+/// The way in which a ray finds the primitives that it tries.
+///
+/// The textbook's formulas always try each of them: their errors have no bound, so what they would
+/// find depends on what they try.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Search {
-    /// What the scene's shape does not rule out: by cones of directions around the eye, its images
-    /// and the lights, and by spheres around triangles; or, among many primitives, by a tree of
-    /// boxes.
+pub enum Acceleration {
+    /// Skips primitives that the ray cannot hit: by a BVH among many primitives; among few by
+    /// direction cones seen from the eye, its mirror images and the lights, and by spheres around
+    /// triangles.
     #[default]
     Auto,
-    /// Each: the definition, to hold the other against.
-    Exhaustive,
+    /// Tries each primitive: the definition that the other is tested against.
+    None,
 }
 
 /// The number of rays that are followed side by side, as a packet.
@@ -46,7 +48,7 @@ pub enum Lanes {
 
 impl Default for Execution {
     fn default() -> Self {
-        Self { lanes: Lanes::default(), share_samples: true, search: Search::default() }
+        Self { lanes: Lanes::default(), share_samples: true, acceleration: Acceleration::default() }
     }
 }
 

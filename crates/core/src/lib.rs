@@ -27,7 +27,7 @@ mod trace;
 
 pub use analysis::Analysis;
 pub use cast::Caster;
-pub use execution::{Execution, Lanes, Search};
+pub use execution::{Acceleration, Execution, Lanes};
 pub use render::sample_count::primary_rays;
 pub use render::tracer::tracer;
 pub use scene::Scene;

@@ -6,7 +6,7 @@ use crate::accel::cones::ConeSet;
 use crate::accel::occluders::Occluders;
 use crate::accel::plane_culling::hiding_planes;
 use crate::accel::primitives::{Hit, Primitives};
-use crate::execution::Search;
+use crate::execution::Acceleration;
 use crate::formulas::{Family, LightPath};
 use crate::material::{Finish, Light, Material, power};
 use crate::ray::Ray;
@@ -51,15 +51,15 @@ struct Surface<L: Lane> {
 
 impl<S: Scalar, F: Family> World<S, F> {
     /// For rays that all start at `eye`, the camera's, and go forward; or else for any.
-    pub(crate) fn new(scene: &Scene, eye: Option<DVec3>, search: Search) -> Self {
+    pub(crate) fn new(scene: &Scene, eye: Option<DVec3>, acceleration: Acceleration) -> Self {
         // What is left out rests on the formulas' error bounds.
-        let search = if F::FAITHFUL { search } else { Search::Exhaustive };
-        let scene = match (eye, search) {
-            (Some(_), Search::Auto) => &cull_behind(scene, S::ROUNDOFF),
+        let acceleration = if F::FAITHFUL { acceleration } else { Acceleration::None };
+        let scene = match (eye, acceleration) {
+            (Some(_), Acceleration::Auto) => &cull_behind(scene, S::ROUNDOFF),
             _ => scene,
         };
-        let mut primitives = Primitives::new(scene, search);
-        let use_cones = search == Search::Auto && primitives.leaves().is_none();
+        let mut primitives = Primitives::new(scene, acceleration);
+        let use_cones = acceleration == Acceleration::Auto && primitives.leaves().is_none();
         if use_cones && eye.is_some() {
             primitives.bound_triangles(scene);
         }

@@ -79,8 +79,8 @@ impl Input {
             PrecisionOption::F64 => (Precision::F64, "as asked for".to_owned()),
         };
         scene.render.arithmetic = Arithmetic { formulas: options.formulas.into(), precision };
-        let (lanes, search) = (options.lanes.or(Lanes::suggested(&demand)), options.search.into());
-        let execution = Execution { lanes, share_samples, search };
+        let lanes = options.lanes.or(Lanes::suggested(&demand));
+        let execution = Execution { lanes, share_samples, acceleration: options.accel.into() };
         let skipped_triangles = file.skipped_triangles;
         Ok(Self { name, scene, width, height, execution, reason, skipped_triangles })
     }

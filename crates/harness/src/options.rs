@@ -4,7 +4,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use rayweave_contract::Strategy;
 use rayweave_core::scene::MAX_ANTIALIASING;
-use rayweave_core::{Formulas, Lanes, Sampling, Search};
+use rayweave_core::{Acceleration, Formulas, Lanes, Sampling};
 use rayweave_registry::STRATEGIES;
 use serde::{Deserialize, Serialize};
 use std::num::{NonZeroU32, NonZeroUsize};
@@ -49,9 +49,9 @@ pub struct SceneOptions {
     /// another picture
     #[arg(long, value_enum, default_value_t)]
     pub adaptive: SwitchOption,
-    /// Which primitives a ray tries
-    #[arg(long, value_enum, default_value_t)]
-    pub search: SearchOption,
+    /// Whether rays skip primitives that they cannot hit; the picture is the same
+    #[arg(long, alias = "search", value_enum, default_value_t)]
+    pub accel: AccelerationOption,
 }
 
 /// Where the samples of a pixel lie.
@@ -125,14 +125,15 @@ pub enum SwitchOption {
     Off,
 }
 
-/// Which primitives a ray tries.
+/// How a ray finds the primitives that it tries.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize, ValueEnum)]
-pub enum SearchOption {
-    /// Those that the scene's shape does not rule out
+pub enum AccelerationOption {
+    /// What suits the scene: a BVH among many primitives, cones and spheres among few
     #[default]
     Auto,
-    /// Each: for comparison
-    Exhaustive,
+    /// Nothing: every ray tries every primitive
+    #[value(alias = "exhaustive")]
+    None,
 }
 
 /// The size of the tiles.
@@ -164,11 +165,11 @@ impl LanesOption {
     }
 }
 
-impl From<SearchOption> for Search {
-    fn from(option: SearchOption) -> Self {
+impl From<AccelerationOption> for Acceleration {
+    fn from(option: AccelerationOption) -> Self {
         match option {
-            SearchOption::Auto => Self::Auto,
-            SearchOption::Exhaustive => Self::Exhaustive,
+            AccelerationOption::Auto => Self::Auto,
+            AccelerationOption::None => Self::None,
         }
     }
 }

@@ -9,7 +9,7 @@ use std::path::Path;
 
 /// The answer of `sample` to a job for `scene`, which is JSON.
 fn answer(folder: &Path, scene: &str, count_rays: bool) -> Value {
-    let options = r#""size":[9,7],"antialiasing":1,"sampling":"Importance","precision":"F64","formulas":"Textbook","lanes":"One","share_samples":"Off","adaptive":"Off","search":"Exhaustive""#;
+    let options = r#""size":[9,7],"antialiasing":1,"sampling":"Importance","precision":"F64","formulas":"Textbook","lanes":"One","share_samples":"Off","adaptive":"Off","accel":"None""#;
     let job = format!(
         r#"{{"scene":{scene},"options":{{{options}}},"tile":4,"strategy":"tile-queue","threads":2,"count_rays":{count_rays}}}"#
     );
@@ -22,7 +22,7 @@ fn answer(folder: &Path, scene: &str, count_rays: bool) -> Value {
 fn a_sample_renders_as_the_comparison_says() {
     let folder = folder();
     let options = "--size 9x7 --antialiasing 1 --sampling importance --precision f64 --formulas textbook \
-                   --lanes 1 --share-samples off --adaptive off --search exhaustive";
+                   --lanes 1 --share-samples off --adaptive off --accel none";
     let rendered = rayweave(folder.path(), &format!("render {options} -o a.ppm")).expect_success();
     let digest = rendered.split("digest ").nth(1).expect("a digest")[..16].to_owned();
     let compare =

@@ -5,28 +5,28 @@ use glam::DVec3;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use rayweave_core::scene::{Cylinder, Sphere, Triangle};
-use rayweave_core::{Execution, Lanes, Precision, Scene, Search};
+use rayweave_core::{Acceleration, Execution, Lanes, Precision, Scene};
 use rayweave_tests::crowd::{Arrangement, Shape, crowd, meshes};
 use rayweave_tests::picture::{difference, in_tiles, plain};
 use rayweave_tests::transform::{enlarged, moved};
 
 const PRECISIONS: [Precision; 2] = [Precision::F32, Precision::F64];
 
-/// What is different with a search, in any packet, from a picture that tries everything.
-fn search_differs(scene: &Scene, size: (u32, u32), precision: Precision) -> Option<String> {
+/// What is different with acceleration, in any packet, from a picture that tries everything.
+fn acceleration_differs(scene: &Scene, size: (u32, u32), precision: Precision) -> Option<String> {
     let scene = &scene.with_arithmetic(precision);
     let right = in_tiles(scene, size, plain(), 1000);
     Lanes::ALL.into_iter().find_map(|lanes| {
-        let execution = Execution { lanes, search: Search::Auto, ..plain() };
+        let execution = Execution { lanes, acceleration: Acceleration::Auto, ..plain() };
         let difference = difference(&in_tiles(scene, size, execution, 1000), &right)?;
         Some(format!("{precision}, {lanes:?}: {difference}"))
     })
 }
 
 #[track_caller]
-fn assert_search_agrees(scene: &Scene, size: (u32, u32), name: &str) {
+fn assert_acceleration_agrees(scene: &Scene, size: (u32, u32), name: &str) {
     for precision in PRECISIONS {
-        let difference = search_differs(scene, size, precision);
+        let difference = acceleration_differs(scene, size, precision);
         assert_eq!(difference, None, "{name}");
     }
 }
@@ -43,7 +43,7 @@ fn crowds_agree(count: usize, size: (u32, u32), seeds: std::ops::Range<u64>) {
             let offset = if seed % 2 == 0 { DVec3::ZERO } else { DVec3::new(1e4, -7e3, 8e3) };
             let name =
                 format!("{count} x {shape:?}, {arrangement:?}, seed {seed}, moved by {offset}");
-            assert_search_agrees(&moved(&scene, offset), size, &name);
+            assert_acceleration_agrees(&moved(&scene, offset), size, &name);
         }
     }
 }
@@ -66,7 +66,7 @@ fn a_thousand_primitives() {
 fn ten_thousand_primitives() {
     for (seed, arrangement) in (0..).zip(Arrangement::ALL) {
         let scene = crowd(seed, 10_000, Shape::Any, arrangement);
-        assert_search_agrees(&scene, (24, 18), &format!("{arrangement:?}"));
+        assert_acceleration_agrees(&scene, (24, 18), &format!("{arrangement:?}"));
     }
 }
 
@@ -76,7 +76,7 @@ fn closed_meshes() {
     for seed in 0..24 {
         let scene = meshes(seed, 1 + seed as usize % 8);
         let offset = if seed % 3 == 0 { DVec3::new(2e3, 3e3, -1e4) } else { DVec3::ZERO };
-        assert_search_agrees(&moved(&scene, offset), (24, 18), &format!("seed {seed}"));
+        assert_acceleration_agrees(&moved(&scene, offset), (24, 18), &format!("seed {seed}"));
     }
 }
 
@@ -86,7 +86,7 @@ fn every_small_count() {
     for count in 1..=40 {
         for (seed, arrangement) in (0..).zip([Arrangement::Overlapping, Arrangement::Copies]) {
             let scene = crowd(seed, count, Shape::Any, arrangement);
-            assert_search_agrees(&scene, (24, 18), &format!("{count} x {arrangement:?}"));
+            assert_acceleration_agrees(&scene, (24, 18), &format!("{count} x {arrangement:?}"));
         }
     }
 }
@@ -117,7 +117,7 @@ fn one_primitive_many_times() {
             material: material(i),
             ..cylinder
         });
-        assert_search_agrees(&scene, (24, 18), &format!("{count} x {shape:?}"));
+        assert_acceleration_agrees(&scene, (24, 18), &format!("{count} x {shape:?}"));
     }
 }
 
@@ -154,7 +154,7 @@ proptest! {
         prop_assume!(scene.check().is_ok());
         let scene = scene.with_arithmetic(precision);
         let right = in_tiles(&scene, (16, 12), plain(), 1000);
-        let execution = Execution { lanes, search: Search::Auto, ..plain() };
+        let execution = Execution { lanes, acceleration: Acceleration::Auto, ..plain() };
         let found = in_tiles(&scene, (16, 12), execution, 1000);
         prop_assert_eq!(difference(&found, &right), None);
     }

@@ -1,5 +1,5 @@
 //! Culling by planes, cones and bounding spheres changes no picture: in scenes of
-//! a few primitives the search has the bits of trying everything, also where eyes and lights stand
+//! a few primitives acceleration has the bits of trying everything, also where eyes and lights stand
 //! in planes, on surfaces and inside of things, and where rays run along them.
 
 use glam::DVec3;
@@ -10,7 +10,7 @@ use rayweave_contract::Image;
 use rayweave_core::scene::{
     Camera, Cylinder, Light, Material, Plane, RenderSettings, Sphere, Triangle,
 };
-use rayweave_core::{Execution, Lanes, Precision, Scene, Search};
+use rayweave_core::{Acceleration, Execution, Lanes, Precision, Scene};
 use rayweave_tests::picture::{difference, in_tiles, plain};
 use rayweave_tests::transform::{enlarged, moved};
 
@@ -21,13 +21,13 @@ fn picture(scene: &Scene, execution: Execution) -> Image {
     in_tiles(scene, SIZE, execution, 1000)
 }
 
-/// What is different with a search, in any packet, from a picture that tries everything.
-fn search_differs(scene: &Scene) -> Option<String> {
+/// What is different with acceleration, in any packet, from a picture that tries everything.
+fn acceleration_differs(scene: &Scene) -> Option<String> {
     PRECISIONS.into_iter().find_map(|precision| {
         let scene = &scene.with_arithmetic(precision);
         let right = picture(scene, plain());
         Lanes::ALL.into_iter().find_map(|lanes| {
-            let execution = Execution { lanes, search: Search::Auto, ..plain() };
+            let execution = Execution { lanes, acceleration: Acceleration::Auto, ..plain() };
             let difference = difference(&picture(scene, execution), &right)?;
             Some(format!("{precision}, {lanes:?}: {difference}"))
         })
@@ -35,8 +35,8 @@ fn search_differs(scene: &Scene) -> Option<String> {
 }
 
 #[track_caller]
-fn assert_search_agrees(scene: &Scene, name: &str) {
-    assert_eq!(search_differs(scene), None, "{name}");
+fn assert_acceleration_agrees(scene: &Scene, name: &str) {
+    assert_eq!(acceleration_differs(scene), None, "{name}");
 }
 
 // Scenes that are hard for one thing
@@ -108,7 +108,7 @@ fn placed(scene: &Scene) -> [Scene; 4] {
 
 fn assert_agrees_everywhere(scene: &Scene, name: &str) {
     for (i, scene) in placed(scene).iter().enumerate() {
-        assert_search_agrees(scene, &format!("{name}, place {i}"));
+        assert_acceleration_agrees(scene, &format!("{name}, place {i}"));
     }
 }
 
@@ -445,6 +445,6 @@ proptest! {
         }
         let scene = &placed(&scene)[placement];
         prop_assume!(scene.check().is_ok());
-        prop_assert_eq!(search_differs(scene), None);
+        prop_assert_eq!(acceleration_differs(scene), None);
     }
 }

@@ -5,7 +5,7 @@ use crate::accel::bounding_sphere::BoundingSphere;
 use crate::accel::bvh::Bvh;
 use crate::accel::cones::ConeSet;
 use crate::accel::occluders::Occluders;
-use crate::execution::Search;
+use crate::execution::Acceleration;
 use crate::formulas::{Aim, Family, LightPath};
 use crate::ray::{AxisOrder, Ray, miss};
 use crate::scene::Scene;
@@ -72,8 +72,8 @@ impl<L: Lane> Hit<L> {
 }
 
 impl<S: Scalar> Primitives<S> {
-    /// With a tree over the bounded primitives if `search` wants one and it pays.
-    pub(crate) fn new(scene: &Scene, search: Search) -> Self {
+    /// With a tree over the bounded primitives if `acceleration` wants one and it pays.
+    pub(crate) fn new(scene: &Scene, acceleration: Acceleration) -> Self {
         let materials = (scene.planes.iter().map(|p| p.material))
             .chain(scene.spheres.iter().map(|s| s.material))
             .chain(scene.triangles.iter().map(|t| t.material))
@@ -99,7 +99,7 @@ impl<S: Scalar> Primitives<S> {
             triangle_bounds: vec![],
             materials,
         };
-        if search == Search::Auto {
+        if acceleration == Acceleration::Auto {
             primitives.build_bvh();
         }
         primitives

@@ -77,7 +77,7 @@ impl<L: Lane, F: Family> Tracer<L, F> {
         let &Picture { scene, width, height, execution } = picture;
         let filter = Filter::new(&scene.render);
         Self {
-            world: World::new(scene, Some(scene.camera.position), execution.search),
+            world: World::new(scene, Some(scene.camera.position), execution.acceleration),
             camera: Camera::new(&scene.camera, width, filter.density()),
             filter,
             width,

@@ -13,7 +13,7 @@ use crate::with_noise::with_noise;
 use crate::{Outcome, complain, print};
 use clap::Args;
 use rayweave_contract::Strategy;
-use rayweave_core::{Arithmetic, Execution, Search};
+use rayweave_core::{Acceleration, Arithmetic, Execution};
 use rayweave_measure::compare::{CompareError, Comparison, Entry, Executor};
 use rayweave_measure::noise::NoiseMonitor;
 use rayweave_measure::{Machine, Measurement, Protocol, TileCosts};
@@ -354,10 +354,10 @@ fn subjects<'a>(
     options: &'a Options,
 ) -> impl Iterator<Item = Result<Subject, String>> + 'a {
     let Arithmetic { formulas, precision } = input.scene.render.arithmetic;
-    let Execution { lanes, search, .. } = input.execution;
-    let accel = match search {
-        Search::Auto => "auto",
-        Search::Exhaustive => "none",
+    let Execution { lanes, acceleration, .. } = input.execution;
+    let accel = match acceleration {
+        Acceleration::Auto => "auto",
+        Acceleration::None => "none",
     };
     ways(options).iter().map(move |&share_samples| {
         Ok(Subject {
