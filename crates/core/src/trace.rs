@@ -3,9 +3,10 @@
 
 use crate::accel::behind_culling::cull_behind;
 use crate::accel::cones::ConeSet;
+use crate::accel::hit::Hit;
 use crate::accel::occluders::Occluders;
 use crate::accel::plane_culling::hiding_planes;
-use crate::accel::primitives::{Hit, Primitives};
+use crate::accel::primitives::Primitives;
 use crate::execution::Acceleration;
 use crate::formulas::{Family, LightPath};
 use crate::material::{Finish, Light, Material, power};

@@ -50,7 +50,7 @@ mod tests {
     use super::*;
     use crate::random::places;
     use crate::ray::miss;
-    use crate::shapes::triangle::{Aim, Triangle};
+    use crate::shapes::triangle::{RayPrecomputation, Triangle};
 
     /// Rays that graze the sphere where a corner of the triangle touches it: none that hits the
     /// triangle is ruled out, and those that pass a tenth of the radius farther out are.
@@ -79,7 +79,7 @@ mod tests {
             grazing.by_axis(true, |order, _| {
                 let t = Triangle::<S>::new(&triangle).intersect(
                     &grazing,
-                    &Aim::new(&grazing, order),
+                    &RayPrecomputation::new(&grazing, order),
                     true,
                 );
                 let hit = t.lt(miss());

@@ -4,6 +4,7 @@ pub(crate) mod behind_culling;
 pub(crate) mod bounding_sphere;
 pub(crate) mod bvh;
 pub(crate) mod cones;
+pub(crate) mod hit;
 pub(crate) mod occluders;
 pub(crate) mod plane_culling;
 pub(crate) mod primitives;

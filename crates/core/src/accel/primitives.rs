@@ -4,9 +4,10 @@
 use crate::accel::bounding_sphere::BoundingSphere;
 use crate::accel::bvh::Bvh;
 use crate::accel::cones::ConeSet;
+use crate::accel::hit::Hit;
 use crate::accel::occluders::Occluders;
 use crate::execution::Acceleration;
-use crate::formulas::{Aim, Family, LightPath};
+use crate::formulas::{Family, LightPath, RayPrecomputations};
 use crate::ray::{AxisOrder, Ray, miss};
 use crate::scene::Scene;
 use crate::shapes::SurfacePoint;
@@ -40,35 +41,6 @@ pub(crate) struct Primitives<S> {
     triangle_bounds: Vec<BoundingSphere<S>>,
     /// The material of each primitive, by its number.
     materials: Vec<usize>,
-}
-
-/// The closest hit of a ray.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Hit<L: Lane> {
-    /// Infinite where nothing is hit.
-    pub(crate) t: L,
-    /// The number of the primitive, where something is.
-    pub(crate) primitive: L::Index,
-}
-
-impl<L: Lane> Hit<L> {
-    #[inline(always)]
-    pub(crate) fn exists(&self) -> L::Mask {
-        self.t.lt(miss())
-    }
-
-    /// Another hit is nearer if its `t` is smaller; an equal one, if its number is. Where numbers
-    /// only grow, the second question need not be asked.
-    #[inline(always)]
-    fn offer<const ORDERED: bool>(&mut self, number: u32, t: L) {
-        let mut nearer = t.lt(self.t);
-        if !ORDERED {
-            let tie = t.equals(self.t) & L::index_above(self.primitive, number);
-            nearer = nearer | tie;
-        }
-        self.t = L::select(nearer, t, self.t);
-        self.primitive = L::select_index(nearer, L::splat_index(number), self.primitive);
-    }
 }
 
 impl<S: Scalar> Primitives<S> {
@@ -157,21 +129,27 @@ impl<S: Scalar> Primitives<S> {
     /// What the shapes of each kind that is there ask of a ray; triangles, if `order` tells the
     /// axis along which it is longest.
     #[inline(always)]
-    fn aim<L: Lane<Scalar = S>>(&self, ray: &Ray<L>, order: Option<AxisOrder>) -> Aim<L> {
-        Aim {
+    fn precompute<L: Lane<Scalar = S>>(
+        &self,
+        ray: &Ray<L>,
+        order: Option<AxisOrder>,
+    ) -> RayPrecomputations<L> {
+        RayPrecomputations {
             sphere: if self.spheres.shapes.is_empty() {
-                sphere::Aim::none()
+                sphere::RayPrecomputation::none()
             } else {
-                sphere::Aim::new(ray)
+                sphere::RayPrecomputation::new(ray)
             },
             triangle: match order {
-                Some(order) if !self.triangles.shapes.is_empty() => triangle::Aim::new(ray, order),
-                _ => triangle::Aim::none(),
+                Some(order) if !self.triangles.shapes.is_empty() => {
+                    triangle::RayPrecomputation::new(ray, order)
+                }
+                _ => triangle::RayPrecomputation::none(),
             },
             cylinder: if self.cylinders.shapes.is_empty() {
-                cylinder::Aim::none()
+                cylinder::RayPrecomputation::none()
             } else {
-                cylinder::Aim::new(ray)
+                cylinder::RayPrecomputation::new(ray)
             },
         }
     }
@@ -186,15 +164,21 @@ impl<S: Scalar> Primitives<S> {
         wanted: L::Mask,
         from: Option<(&ConeSet<S>, L)>,
     ) -> Hit<L> {
-        let mut closest = Hit { t: miss(), primitive: L::splat_index(0) };
+        let mut closest = Hit::none();
         for (number, plane) in (0..).zip(&self.planes) {
             closest.offer::<true>(number, F::plane(plane, ray));
         }
         match (&self.bvh, from) {
             (Some(bvh), _) if F::FAITHFUL => ray.by_heading(wanted, |heading, wanted| {
-                let aim = self.aim(ray, Some(heading.order));
+                let precomputed = self.precompute(ray, Some(heading.order));
                 bvh.traverse(ray, heading, wanted, closest.t, |leaf, reached| {
-                    self.closest_hit_in_leaf::<L, F>(leaf, ray, &aim, reached, &mut closest);
+                    self.closest_hit_in_leaf::<L, F>(
+                        leaf,
+                        ray,
+                        &precomputed,
+                        reached,
+                        &mut closest,
+                    );
                     (wanted, closest.t)
                 });
             }),
@@ -205,8 +189,8 @@ impl<S: Scalar> Primitives<S> {
                     wanted
                 });
             }
-            _ => self.by_axis::<L, F>(ray, wanted, |leaf, aim, wanted| {
-                self.closest_hit_in_leaf::<L, F>(leaf, ray, aim, wanted, &mut closest);
+            _ => self.by_axis::<L, F>(ray, wanted, |leaf, precomputed, wanted| {
+                self.closest_hit_in_leaf::<L, F>(leaf, ray, precomputed, wanted, &mut closest);
             }),
         }
         closest
@@ -219,24 +203,27 @@ impl<S: Scalar> Primitives<S> {
         &self,
         ray: &Ray<L>,
         wanted: L::Mask,
-        mut leaf: impl FnMut(&Leaf, &Aim<L>, L::Mask),
+        mut leaf: impl FnMut(&Leaf, &RayPrecomputations<L>, L::Mask),
     ) {
         let [triangles, others] = &self.triangles_and_others;
         let empty = Leaf::default();
-        let others_aim = self.aim(ray, None);
+        let for_others = self.precompute(ray, None);
         if *others != empty {
-            leaf(others, &others_aim, wanted);
+            leaf(others, &for_others, wanted);
         }
         if *triangles == empty {
             return;
         }
         if !F::FAITHFUL {
-            return leaf(triangles, &others_aim, wanted);
+            return leaf(triangles, &for_others, wanted);
         }
         ray.by_axis(self.near_any_triangle(ray, wanted), |order, wanted| {
             leaf(
                 triangles,
-                &Aim { triangle: triangle::Aim::new(ray, order), ..others_aim },
+                &RayPrecomputations {
+                    triangle: triangle::RayPrecomputation::new(ray, order),
+                    ..for_others
+                },
                 wanted,
             );
         });
@@ -273,7 +260,7 @@ impl<S: Scalar> Primitives<S> {
 
     #[inline(never)]
     fn sphere<L: Lane<Scalar = S>, F: Family>(&self, i: usize, ray: &Ray<L>, wanted: L::Mask) -> L {
-        F::sphere(&self.spheres.shapes[i], ray, &sphere::Aim::new(ray), wanted)
+        F::sphere(&self.spheres.shapes[i], ray, &sphere::RayPrecomputation::new(ray), wanted)
     }
 
     #[inline(never)]
@@ -285,8 +272,8 @@ impl<S: Scalar> Primitives<S> {
     ) -> L {
         let mut closest = miss();
         ray.by_axis(wanted, |order, wanted| {
-            let aim = triangle::Aim::new(ray, order);
-            let t = F::triangle(&self.triangles.shapes[i], ray, &aim, wanted);
+            let precomputed = triangle::RayPrecomputation::new(ray, order);
+            let t = F::triangle(&self.triangles.shapes[i], ray, &precomputed, wanted);
             closest = L::select(wanted, t, closest);
         });
         closest
@@ -299,7 +286,7 @@ impl<S: Scalar> Primitives<S> {
         ray: &Ray<L>,
         wanted: L::Mask,
     ) -> L {
-        F::cylinder(&self.cylinders.shapes[i], ray, &cylinder::Aim::new(ray), wanted)
+        F::cylinder(&self.cylinders.shapes[i], ray, &cylinder::RayPrecomputation::new(ray), wanted)
     }
 
     /// Tries every primitive of a leaf.
@@ -308,18 +295,20 @@ impl<S: Scalar> Primitives<S> {
         &self,
         leaf: &Leaf,
         ray: &Ray<L>,
-        aim: &Aim<L>,
+        precomputed: &RayPrecomputations<L>,
         wanted: L::Mask,
         closest: &mut Hit<L>,
     ) {
         for (number, sphere) in self.spheres.range(&leaf.spheres) {
-            closest.offer::<false>(number, F::sphere(sphere, ray, &aim.sphere, wanted));
+            closest.offer::<false>(number, F::sphere(sphere, ray, &precomputed.sphere, wanted));
         }
         for (number, triangle) in self.triangles.range(&leaf.triangles) {
-            closest.offer::<false>(number, F::triangle(triangle, ray, &aim.triangle, wanted));
+            closest
+                .offer::<false>(number, F::triangle(triangle, ray, &precomputed.triangle, wanted));
         }
         for (number, cylinder) in self.cylinders.range(&leaf.cylinders) {
-            closest.offer::<false>(number, F::cylinder(cylinder, ray, &aim.cylinder, wanted));
+            closest
+                .offer::<false>(number, F::cylinder(cylinder, ray, &precomputed.cylinder, wanted));
         }
     }
 
@@ -343,11 +332,17 @@ impl<S: Scalar> Primitives<S> {
         }
         match (&self.bvh, &occluders.cones) {
             (Some(bvh), _) if F::FAITHFUL => ray.by_heading(clear, |heading, wanted| {
-                let aim = self.aim(ray, Some(heading.order));
+                let precomputed = self.precompute(ray, Some(heading.order));
                 bvh.traverse(ray, heading, wanted, limit, |leaf, reached| {
                     clear = clear
                         & !(reached
-                            & !self.unoccluded_in_leaf::<L, F>(leaf, ray, &aim, limit, reached));
+                            & !self.unoccluded_in_leaf::<L, F>(
+                                leaf,
+                                ray,
+                                &precomputed,
+                                limit,
+                                reached,
+                            ));
                     (wanted & clear, limit)
                 });
             }),
@@ -357,10 +352,11 @@ impl<S: Scalar> Primitives<S> {
                     clear
                 });
             }
-            _ => self.by_axis::<L, F>(ray, clear, |leaf, aim, wanted| {
+            _ => self.by_axis::<L, F>(ray, clear, |leaf, precomputed, wanted| {
                 let reached = wanted & clear;
                 clear = clear
-                    & !(reached & !self.unoccluded_in_leaf::<L, F>(leaf, ray, aim, limit, reached));
+                    & !(reached
+                        & !self.unoccluded_in_leaf::<L, F>(leaf, ray, precomputed, limit, reached));
             }),
         }
         wanted & !clear
@@ -372,25 +368,25 @@ impl<S: Scalar> Primitives<S> {
         &self,
         leaf: &Leaf,
         ray: &Ray<L>,
-        aim: &Aim<L>,
+        precomputed: &RayPrecomputations<L>,
         limit: L,
         wanted: L::Mask,
     ) -> L::Mask {
         let mut clear = wanted;
         for (_, sphere) in self.spheres.range(&leaf.spheres) {
-            clear = clear & !F::sphere(sphere, ray, &aim.sphere, clear).lt(limit);
+            clear = clear & !F::sphere(sphere, ray, &precomputed.sphere, clear).lt(limit);
             if !clear.any() {
                 return clear;
             }
         }
         for (_, triangle) in self.triangles.range(&leaf.triangles) {
-            clear = clear & !F::triangle(triangle, ray, &aim.triangle, clear).lt(limit);
+            clear = clear & !F::triangle(triangle, ray, &precomputed.triangle, clear).lt(limit);
             if !clear.any() {
                 return clear;
             }
         }
         for (_, cylinder) in self.cylinders.range(&leaf.cylinders) {
-            clear = clear & !F::cylinder(cylinder, ray, &aim.cylinder, clear).lt(limit);
+            clear = clear & !F::cylinder(cylinder, ray, &precomputed.cylinder, clear).lt(limit);
             if !clear.any() {
                 return clear;
             }

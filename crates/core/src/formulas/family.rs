@@ -23,19 +23,19 @@ pub(crate) trait Family: Debug + Send + Sync + 'static {
     fn sphere<L: Lane>(
         sphere: &Sphere<L::Scalar>,
         ray: &Ray<L>,
-        aim: &sphere::Aim<L>,
+        precomputed: &sphere::RayPrecomputation<L>,
         wanted: L::Mask,
     ) -> L;
     fn triangle<L: Lane>(
         triangle: &Triangle<L::Scalar>,
         ray: &Ray<L>,
-        aim: &triangle::Aim<L>,
+        precomputed: &triangle::RayPrecomputation<L>,
         wanted: L::Mask,
     ) -> L;
     fn cylinder<L: Lane>(
         cylinder: &Cylinder<L::Scalar>,
         ray: &Ray<L>,
-        aim: &cylinder::Aim<L>,
+        precomputed: &cylinder::RayPrecomputation<L>,
         wanted: L::Mask,
     ) -> L;
 
@@ -49,10 +49,10 @@ pub(crate) trait Family: Debug + Send + Sync + 'static {
 
 /// What of a ray is the same for all shapes of a kind: computed once, for kinds that are there.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Aim<L> {
-    pub(crate) sphere: sphere::Aim<L>,
-    pub(crate) triangle: triangle::Aim<L>,
-    pub(crate) cylinder: cylinder::Aim<L>,
+pub(crate) struct RayPrecomputations<L> {
+    pub(crate) sphere: sphere::RayPrecomputation<L>,
+    pub(crate) triangle: triangle::RayPrecomputation<L>,
+    pub(crate) cylinder: cylinder::RayPrecomputation<L>,
 }
 
 /// The way from a surface to a light.

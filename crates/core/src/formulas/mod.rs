@@ -7,7 +7,7 @@ mod family;
 mod robust;
 mod textbook;
 
-pub(crate) use family::{Aim, Family, LightPath};
+pub(crate) use family::{Family, LightPath, RayPrecomputations};
 
 use crate::settings::{Arithmetic, Formulas, Precision};
 use crate::simd::lane::Scalar;

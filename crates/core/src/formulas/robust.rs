@@ -26,30 +26,30 @@ impl Family for Robust {
     fn sphere<L: Lane>(
         sphere: &Sphere<L::Scalar>,
         ray: &Ray<L>,
-        aim: &sphere::Aim<L>,
+        precomputed: &sphere::RayPrecomputation<L>,
         wanted: L::Mask,
     ) -> L {
-        sphere.intersect(ray, aim, wanted)
+        sphere.intersect(ray, precomputed, wanted)
     }
 
     #[inline(always)]
     fn triangle<L: Lane>(
         triangle: &Triangle<L::Scalar>,
         ray: &Ray<L>,
-        aim: &triangle::Aim<L>,
+        precomputed: &triangle::RayPrecomputation<L>,
         wanted: L::Mask,
     ) -> L {
-        triangle.intersect(ray, aim, wanted)
+        triangle.intersect(ray, precomputed, wanted)
     }
 
     #[inline(always)]
     fn cylinder<L: Lane>(
         cylinder: &Cylinder<L::Scalar>,
         ray: &Ray<L>,
-        aim: &cylinder::Aim<L>,
+        precomputed: &cylinder::RayPrecomputation<L>,
         wanted: L::Mask,
     ) -> L {
-        cylinder.intersect(ray, aim, wanted)
+        cylinder.intersect(ray, precomputed, wanted)
     }
 
     /// The hit is moved onto the surface: what is left of its error is bounded by the clearance.

@@ -31,7 +31,7 @@ impl Family for Textbook {
     fn sphere<L: Lane>(
         sphere: &Sphere<L::Scalar>,
         ray: &Ray<L>,
-        _aim: &sphere::Aim<L>,
+        _precomputed: &sphere::RayPrecomputation<L>,
         wanted: L::Mask,
     ) -> L {
         let from_center = ray.origin - Vector::splat(sphere.center);
@@ -48,7 +48,7 @@ impl Family for Textbook {
     fn triangle<L: Lane>(
         triangle: &Triangle<L::Scalar>,
         ray: &Ray<L>,
-        _aim: &triangle::Aim<L>,
+        _precomputed: &triangle::RayPrecomputation<L>,
         wanted: L::Mask,
     ) -> L {
         let [a, b, c] = triangle.vertices.map(Vector::splat);
@@ -69,7 +69,7 @@ impl Family for Textbook {
     fn cylinder<L: Lane>(
         cylinder: &Cylinder<L::Scalar>,
         ray: &Ray<L>,
-        _aim: &cylinder::Aim<L>,
+        _precomputed: &cylinder::RayPrecomputation<L>,
         wanted: L::Mask,
     ) -> L {
         let (bottom, top) = (Vector::splat(cylinder.bottom), L::splat(cylinder.top));

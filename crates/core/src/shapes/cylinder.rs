@@ -19,13 +19,13 @@ pub(crate) struct Cylinder<S> {
 
 /// What all cylinders ask of a ray.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Aim<L> {
+pub(crate) struct RayPrecomputation<L> {
     /// Of the direction's part across the axis. Infinite for a ray along the axis, which then
     /// gives NaN and so a miss.
     inverse_square: L,
 }
 
-impl<L: Lane> Aim<L> {
+impl<L: Lane> RayPrecomputation<L> {
     /// Where there are no cylinders.
     #[inline(always)]
     pub(crate) fn none() -> Self {
@@ -63,7 +63,7 @@ impl<S: Scalar> Cylinder<S> {
     pub(crate) fn intersect<L: Lane<Scalar = S>>(
         &self,
         ray: &Ray<L>,
-        aim: &Aim<L>,
+        precomputed: &RayPrecomputation<L>,
         wanted: L::Mask,
     ) -> L {
         let zero = L::literal(0.0);
@@ -71,21 +71,21 @@ impl<S: Scalar> Cylinder<S> {
         let Vector { x: dx, y: dy, z: dz } = ray.direction;
         let (cx, cz) =
             (L::splat(self.bottom.x) - ray.origin.x, L::splat(self.bottom.z) - ray.origin.z);
-        let closest = (cx * dx + cz * dz) * aim.inverse_square;
+        let closest = (cx * dx + cz * dz) * precomputed.inverse_square;
         let (ax, az) = (cx - dx * closest, cz - dz * closest);
         let discriminant = radius_squared - (ax * ax + az * az);
         let crossed = wanted & zero.le(discriminant);
         if !crossed.any() {
             return miss();
         }
-        let closest = closest + (ax * dx + az * dz) * aim.inverse_square;
+        let closest = closest + (ax * dx + az * dz) * precomputed.inverse_square;
         let power = (cx * cx + cz * cz) - radius_squared;
         // Behind a ray that starts outside: both roots are below 0.
         let crossed = crossed & !(closest.lt(zero) & zero.lt(power));
         if !crossed.any() {
             return miss();
         }
-        let (near, far) = quadric::roots(closest, discriminant, power, aim.inverse_square);
+        let (near, far) = quadric::roots(closest, discriminant, power, precomputed.inverse_square);
         // Differences first, as everywhere.
         let (to_bottom, to_top) =
             (L::splat(self.bottom.y) - ray.origin.y, L::splat(self.top) - ray.origin.y);

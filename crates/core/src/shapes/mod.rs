@@ -3,7 +3,7 @@
 //! A shape is stored in the precision of the picture. Its `intersect` returns the smallest `t > 0`
 //! at which a ray meets it, or [`miss`](crate::ray::miss), which is infinite: so "nearer than" is
 //! one comparison, and NaN, from input that means nothing, is never nearer. What of a ray is the
-//! same for all shapes of a kind is computed once, as the kind's `Aim`.
+//! same for all shapes of a kind is computed once, as the kind's `RayPrecomputation`.
 
 pub(crate) mod aabb;
 pub(crate) mod cylinder;

@@ -16,11 +16,11 @@ pub(crate) struct Sphere<S> {
 
 /// What all spheres ask of a ray.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Aim<L> {
+pub(crate) struct RayPrecomputation<L> {
     inverse_square: L,
 }
 
-impl<L: Lane> Aim<L> {
+impl<L: Lane> RayPrecomputation<L> {
     /// Where there are no spheres.
     #[inline(always)]
     pub(crate) fn none() -> Self {
@@ -53,13 +53,13 @@ impl<S: Scalar> Sphere<S> {
     pub(crate) fn intersect<L: Lane<Scalar = S>>(
         &self,
         ray: &Ray<L>,
-        aim: &Aim<L>,
+        precomputed: &RayPrecomputation<L>,
         wanted: L::Mask,
     ) -> L {
         let zero = L::literal(0.0);
         let radius_squared = L::splat(self.radius_squared);
         let to_center = Vector::splat(self.center) - ray.origin;
-        let closest = to_center.dot(ray.direction) * aim.inverse_square;
+        let closest = to_center.dot(ray.direction) * precomputed.inverse_square;
         let aside = to_center - ray.direction * closest;
         let discriminant = radius_squared - aside.dot(aside);
         let crossed = wanted & zero.le(discriminant);
@@ -68,14 +68,14 @@ impl<S: Scalar> Sphere<S> {
         }
         // What is left of the point along the ray is the error of `closest`: it is told at little
         // cost.
-        let closest = closest + aside.dot(ray.direction) * aim.inverse_square;
+        let closest = closest + aside.dot(ray.direction) * precomputed.inverse_square;
         let power = to_center.dot(to_center) - radius_squared;
         // Behind a ray that starts outside: both roots are below 0.
         let crossed = crossed & !(closest.lt(zero) & zero.lt(power));
         if !crossed.any() {
             return miss();
         }
-        let (near, far) = quadric::roots(closest, discriminant, power, aim.inverse_square);
+        let (near, far) = quadric::roots(closest, discriminant, power, precomputed.inverse_square);
         let t = L::select(zero.lt(near), near, far);
         L::select(crossed & zero.lt(t), t, miss())
     }

@@ -22,7 +22,7 @@ pub(crate) struct Triangle<S> {
 /// What all triangles ask of rays that are longest along one axis: the shear that turns them into
 /// the axis along which they are longest. Triangles are then tested in the two other coordinates.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Aim<L> {
+pub(crate) struct RayPrecomputation<L> {
     /// The axes in the order in which coordinates are taken.
     order: AxisOrder,
     /// The rays' origin, in this order.
@@ -32,7 +32,7 @@ pub(crate) struct Aim<L> {
     along: L,
 }
 
-impl<L: Lane> Aim<L> {
+impl<L: Lane> RayPrecomputation<L> {
     /// Where there are no triangles.
     #[inline(always)]
     pub(crate) fn none() -> Self {
@@ -97,13 +97,13 @@ impl<S: Scalar> Triangle<S> {
     pub(crate) fn intersect<L: Lane<Scalar = S>>(
         &self,
         ray: &Ray<L>,
-        aim: &Aim<L>,
+        precomputed: &RayPrecomputation<L>,
         wanted: L::Mask,
     ) -> L {
         let zero = L::literal(0.0);
         // Written out: a `map` over an array is not always inlined.
         let [a, b, c] = self.vertices;
-        let (a, b, c) = (aim.project(a), aim.project(b), aim.project(c));
+        let (a, b, c) = (precomputed.project(a), precomputed.project(b), precomputed.project(c));
         let edge = |[px, py, _]: [L; 3], [qx, qy, _]: [L; 3]| sign_of_difference(px, qy, py, qx);
         let (u, v, w) = (edge(b, c), edge(c, a), edge(a, b));
         let front = zero.le(u) & zero.le(v) & zero.le(w);
@@ -117,7 +117,7 @@ impl<S: Scalar> Triangle<S> {
         let slope = normal.accurate_dot(ray.direction);
         let t = normal.accurate_dot(Vector::splat(self.vertices[0]) - ray.origin) / slope;
         let (lowest, highest) = (a[2].min(b[2]).min(c[2]), a[2].max(b[2]).max(c[2]));
-        let (from, to) = (lowest / aim.along, highest / aim.along);
+        let (from, to) = (lowest / precomputed.along, highest / precomputed.along);
         let t = t.max(from.min(to)).min(from.max(to));
         // A ray parallel to the plane, or a triangle without area, misses.
         L::select(inside & zero.lt(slope.abs()) & zero.lt(t), t, miss())
