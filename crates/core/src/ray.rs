@@ -41,13 +41,13 @@ const ORDERS: [AxisOrder; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
 
 /// What similar rays have in common: along which axis they are longest, and which way they go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Heading {
+pub(crate) struct DirectionClass {
     pub(crate) order: AxisOrder,
     /// For x, y and z, whether the direction is below 0.
     pub(crate) backward: [bool; 3],
 }
 
-impl Heading {
+impl DirectionClass {
     #[inline(always)]
     fn of<S: Scalar>(direction: [S; 3]) -> Self {
         let [x, y, z] = ORDERS;
@@ -72,21 +72,25 @@ impl<L: Lane> Ray<L> {
         }
     }
 
-    /// Shows `group` the rays of `wanted` by their heading: those of a packet of neighbours mostly
+    /// Shows `group` the rays of `wanted` by their class: those of a packet of neighbours mostly
     /// have one.
     #[inline(always)]
-    pub(crate) fn by_heading(&self, wanted: L::Mask, mut group: impl FnMut(Heading, L::Mask)) {
+    pub(crate) fn by_direction_class(
+        &self,
+        wanted: L::Mask,
+        mut group: impl FnMut(DirectionClass, L::Mask),
+    ) {
         let direction = self.direction.to_array();
         let backward = direction.map(|d| d.lt(L::literal(0.0)));
         let along = longest_axis(direction);
         let mut todo = wanted;
         while let Some(first) = L::first(todo, direction) {
-            let heading = Heading::of(first);
-            let mut alike = todo & along[heading.order[2]];
-            for (one, all) in heading.backward.into_iter().zip(backward) {
+            let class = DirectionClass::of(first);
+            let mut alike = todo & along[class.order[2]];
+            for (one, all) in class.backward.into_iter().zip(backward) {
                 alike = alike & if one { all } else { !all };
             }
-            group(heading, alike);
+            group(class, alike);
             todo = todo & !alike;
         }
     }
@@ -120,7 +124,7 @@ mod tests {
             let mut groups = vec![];
             ray.by_axis(true, |order, _| groups.push(order));
             assert_eq!(groups.len(), 1, "{direction:?}: {groups:?}");
-            assert_eq!(groups[0], Heading::of(direction.to_array()).order, "{direction:?}");
+            assert_eq!(groups[0], DirectionClass::of(direction.to_array()).order, "{direction:?}");
             let [a, b, longest] = groups[0].map(|axis| direction.to_array()[axis].abs());
             assert!(
                 [a, b, longest].iter().any(|c| c.is_nan()) || longest >= f32::max(a, b),

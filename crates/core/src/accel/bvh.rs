@@ -7,7 +7,7 @@
 //! the ray is longest, the box lies behind the ray or beyond what was found before; in this axis
 //! the `t` of every primitive is within its box.
 
-use crate::ray::{Heading, Ray};
+use crate::ray::{DirectionClass, Ray};
 use crate::shapes::MARGIN;
 use crate::shapes::aabb::Aabb;
 use crate::shapes::shape_list::Leaf;
@@ -131,19 +131,19 @@ impl<S: Scalar> Bvh<S> {
         self.leaves.len()
     }
 
-    /// Shows `found` every leaf that a ray of `wanted`, all with this heading, may hit before
+    /// Shows `found` every leaf that a ray of `wanted`, all with this class, may hit before
     /// `limit`, with the rays that may, from near to far. `found` returns the rays that still want
     /// to know, and their limits.
     #[inline(always)]
     pub(crate) fn traverse<L: Lane<Scalar = S>>(
         &self,
         ray: &Ray<L>,
-        heading: Heading,
+        class: DirectionClass,
         mut wanted: L::Mask,
         mut limit: L,
         mut found: impl FnMut(&Leaf, L::Mask) -> (L::Mask, L),
     ) {
-        let slabs = Slabs::new(ray, heading, self.reach);
+        let slabs = Slabs::new(ray, class, self.reach);
         // Far children that are still to be looked at.
         let mut stack = [0_u32; MAX_DEPTH];
         let mut height = 0;
@@ -159,7 +159,7 @@ impl<S: Scalar> Bvh<S> {
                 }
                 Content::Children { axis } => {
                     // Both at once: neither waits for what becomes of the other.
-                    let far = u32::from(!heading.backward[axis as usize]);
+                    let far = u32::from(!class.backward[axis as usize]);
                     let (near, far) = (node.first + 1 - far, node.first + far);
                     let children = [&self.nodes[near as usize], &self.nodes[far as usize]];
                     let reach = |child: &Node<S>| wanted & slabs.reach(&child.bounds, limit);
@@ -197,7 +197,7 @@ impl<S: Scalar> Bvh<S> {
     }
 }
 
-/// What all boxes ask of rays with one heading. Axes are in the heading's order: the one along
+/// What all boxes ask of rays with one class. Axes are in the class's order: the one along
 /// which the rays are longest is last.
 struct Slabs<L> {
     /// For each axis, the place in a box of the side that the rays pass first, and of the other
@@ -211,26 +211,26 @@ struct Slabs<L> {
 
 impl<L: Lane> Slabs<L> {
     #[inline(always)]
-    fn new(ray: &Ray<L>, heading: Heading, reach: L::Scalar) -> Self {
+    fn new(ray: &Ray<L>, class: DirectionClass, reach: L::Scalar) -> Self {
         let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
         let farthest = origin[0].abs().max(origin[1].abs()).max(origin[2].abs());
         let margin = (farthest + L::splat(reach)) * L::literal(MARGIN * L::Scalar::ROUNDOFF);
         // A direction across the axis is turned, by less than the margin tells: no infinity meets a
         // zero.
-        let least = direction[heading.order[2]].abs()
-            * L::literal(L::Scalar::ROUNDOFF * L::Scalar::ROUNDOFF);
+        let least =
+            direction[class.order[2]].abs() * L::literal(L::Scalar::ROUNDOFF * L::Scalar::ROUNDOFF);
         Self {
-            sides: heading.order.map(|axis| {
+            sides: class.order.map(|axis| {
                 let (low, high) = (axis, 3 + axis);
-                if heading.backward[axis] { [high, low] } else { [low, high] }
+                if class.backward[axis] { [high, low] } else { [low, high] }
             }),
-            origin: heading.order.map(|axis| {
+            origin: class.order.map(|axis| {
                 let (above, below) = (origin[axis] + margin, origin[axis] - margin);
-                if heading.backward[axis] { [below, above] } else { [above, below] }
+                if class.backward[axis] { [below, above] } else { [above, below] }
             }),
-            inverse: heading.order.map(|axis| {
+            inverse: class.order.map(|axis| {
                 let d = direction[axis];
-                let turned = if heading.backward[axis] { -least } else { least };
+                let turned = if class.backward[axis] { -least } else { least };
                 L::literal(1.0) / L::select(d.abs().lt(least), turned, d)
             }),
         }

@@ -169,9 +169,9 @@ impl<S: Scalar> Primitives<S> {
             closest.offer::<true>(number, F::plane(plane, ray));
         }
         match (&self.bvh, from) {
-            (Some(bvh), _) if F::FAITHFUL => ray.by_heading(wanted, |heading, wanted| {
-                let precomputed = self.precompute(ray, Some(heading.order));
-                bvh.traverse(ray, heading, wanted, closest.t, |leaf, reached| {
+            (Some(bvh), _) if F::FAITHFUL => ray.by_direction_class(wanted, |class, wanted| {
+                let precomputed = self.precompute(ray, Some(class.order));
+                bvh.traverse(ray, class, wanted, closest.t, |leaf, reached| {
                     self.closest_hit_in_leaf::<L, F>(
                         leaf,
                         ray,
@@ -331,9 +331,9 @@ impl<S: Scalar> Primitives<S> {
             return wanted;
         }
         match (&self.bvh, &occluders.cones) {
-            (Some(bvh), _) if F::FAITHFUL => ray.by_heading(clear, |heading, wanted| {
-                let precomputed = self.precompute(ray, Some(heading.order));
-                bvh.traverse(ray, heading, wanted, limit, |leaf, reached| {
+            (Some(bvh), _) if F::FAITHFUL => ray.by_direction_class(clear, |class, wanted| {
+                let precomputed = self.precompute(ray, Some(class.order));
+                bvh.traverse(ray, class, wanted, limit, |leaf, reached| {
                     clear = clear
                         & !(reached
                             & !self.unoccluded_in_leaf::<L, F>(
