@@ -32,7 +32,7 @@ pub(crate) struct World<S, F> {
     /// The most bounces: 0 if nothing mirrors.
     pub(crate) max_reflections: u32,
     /// Whether it is asked for.
-    trails: bool,
+    hashes_paths: bool,
     formulas: PhantomData<F>,
 }
 
@@ -41,7 +41,7 @@ pub(crate) struct Traced<L: Lane> {
     pub(crate) color: Vector<L>,
     /// The same number for rays that hit the same primitives in the same order, each seen by the
     /// same lights; 0 if nobody asks.
-    pub(crate) trail: L::Index,
+    pub(crate) path_hash: L::Index,
 }
 
 /// A point to be lit: where, how it is turned, how it answers.
@@ -85,7 +85,7 @@ impl<S: Scalar, F: Family> World<S, F> {
             materials: scene.materials.iter().map(Material::new).collect(),
             background: Vector::rounded(scene.render.background),
             max_reflections: if mirrors { scene.render.max_reflections } else { 0 },
-            trails: scene.render.adaptive,
+            hashes_paths: scene.render.adaptive,
             formulas: PhantomData,
         }
     }
@@ -106,7 +106,7 @@ impl<S: Scalar, F: Family> World<S, F> {
         let mut cones = self.eye.as_ref().filter(|_| from_eye).map(|eye| (eye, zero));
         let mut color = Vector::zero();
         let mut share = one;
-        let mut trail = L::splat_index(0);
+        let mut path_hash = L::splat_index(0);
         for bounce in 0..=self.max_reflections {
             let hit = self.primitives.closest_hit::<L, F>(&ray, active, cones.take());
             let missed = active & !hit.exists();
@@ -119,11 +119,12 @@ impl<S: Scalar, F: Family> World<S, F> {
             let kept = one - surface.finish.reflection;
             // A full mirror has no light of its own to look for.
             let shown = active & zero.lt(kept);
-            if self.trails {
-                let longer = L::mix(L::mix(trail, L::splat_index(1)), hit.primitive);
-                trail = L::select_index(active, longer, trail);
+            if self.hashes_paths {
+                let longer =
+                    L::hash_combine(L::hash_combine(path_hash, L::splat_index(1)), hit.primitive);
+                path_hash = L::select_index(active, longer, path_hash);
             }
-            let lit = self.shade(&surface, &ray, shown, &mut trail);
+            let lit = self.shade(&surface, &ray, shown, &mut path_hash);
             color = Vector::select(shown, color + lit * (share * kept), color);
             active = active & zero.lt(surface.finish.reflection);
             if bounce == self.max_reflections || !active.any() {
@@ -135,7 +136,7 @@ impl<S: Scalar, F: Family> World<S, F> {
             share = share * surface.finish.reflection;
             ray = mirrored(&ray, &surface.at);
         }
-        Traced { color, trail }
+        Traced { color, path_hash }
     }
 
     /// What rays from the eye may meet next if all of `active` hit the same plane.
@@ -188,7 +189,7 @@ impl<S: Scalar, F: Family> World<S, F> {
         surface: &Surface<L>,
         ray: &Ray<L>,
         active: L::Mask,
-        trail: &mut L::Index,
+        path_hash: &mut L::Index,
     ) -> Vector<L> {
         let (zero, two) = (L::literal(0.0), L::literal(2.0));
         let Surface { at, finish } = surface;
@@ -196,7 +197,7 @@ impl<S: Scalar, F: Family> World<S, F> {
         let start_reach = start.sum_of_magnitudes();
         let facing = at.normal.dot(ray.direction);
         let mut color = finish.color * finish.ambient;
-        // Numbered from 2: 1 stands for a hit in a trail.
+        // Numbered from 2: 1 stands for a hit in a path hash.
         for (number, light) in (2..).zip(&self.lights) {
             // Lit from where shadow rays start, which is on the viewer's side for certain: a light
             // in the surface itself then stands below it, and no rounding makes it shine.
@@ -223,8 +224,12 @@ impl<S: Scalar, F: Family> World<S, F> {
             if !lit.any() {
                 continue;
             }
-            if self.trails {
-                *trail = L::select_index(lit, L::mix(*trail, L::splat_index(number)), *trail);
+            if self.hashes_paths {
+                *path_hash = L::select_index(
+                    lit,
+                    L::hash_combine(*path_hash, L::splat_index(number)),
+                    *path_hash,
+                );
             }
             // m . -d with m = 2 (n . l) n - l.
             let mirror_cosine = to_light.dot(ray.direction) - two * cosine * facing;

@@ -72,7 +72,7 @@ fn every_density() {
 }
 
 /// Catches a point that is interpolated in one tile and traced in another, where it is at an edge;
-/// and a lane whose trail is another one's.
+/// and a lane whose path hash is another one's.
 #[test]
 fn adaptive_samples() {
     for antialiasing in [1, 2, 3, 5] {

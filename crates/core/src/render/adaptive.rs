@@ -12,7 +12,7 @@ use crate::simd::lane::Scalar;
 #[derive(Clone, Debug)]
 struct Centres<S> {
     colors: [Vec<S>; 3],
-    trails: Vec<u32>,
+    path_hashes: Vec<u32>,
 }
 
 /// The lattice of a tile, band by band: from one row of pixel centres down to the next.
@@ -42,11 +42,11 @@ impl<S: Scalar> Bands<S> {
         }
     }
 
-    /// Takes over their colours and trails.
+    /// Takes over their colours and path hashes.
     pub(crate) fn take_centres(&mut self, found: &Colors<S>) {
         let centres = Centres {
             colors: found.channels.each_ref().map(|channel| channel[..self.count].to_vec()),
-            trails: found.trails[..self.count].to_vec(),
+            path_hashes: found.path_hashes[..self.count].to_vec(),
         };
         self.above = self.below.replace(centres);
     }
@@ -72,22 +72,22 @@ impl<S: Scalar> Bands<S> {
             (0..density).flat_map(|aside| (0..3).map(move |channel| (aside, channel)))
         {
             let (right, across) = (usize::from(aside > 0), share(aside));
-            let mix_across = |centres: &Centres<S>, mixed: &mut Vec<S>| {
+            let lerp_across = |centres: &Centres<S>, mixed: &mut Vec<S>| {
                 let colors = &centres.colors[channel];
                 let pairs = colors.iter().zip(&colors[right..]);
                 mixed.clear();
-                mixed.extend(pairs.map(|(&from, &to)| mix(from, to, across)));
+                mixed.extend(pairs.map(|(&from, &to)| lerp(from, to, across)));
             };
-            mix_across(below, bottom);
+            lerp_across(below, bottom);
             sums.points_mut(channel, aside, last)[..bottom.len()].copy_from_slice(bottom);
             // Above the first row of centres the lattice has nothing.
             let Some(above) = &self.above else { continue };
-            mix_across(above, top);
+            lerp_across(above, top);
             for row in 0..last {
                 let down = share(row + 1);
                 let points = sums.points_mut(channel, aside, row).iter_mut();
                 for ((point, &top), &bottom) in points.zip(&*top).zip(&*bottom) {
-                    *point = mix(top, bottom, down);
+                    *point = lerp(top, bottom, down);
                 }
             }
         }
@@ -100,13 +100,13 @@ impl<S: Scalar> Bands<S> {
         let Some(below) = &self.below else { return };
         for centre in 0..self.count {
             let across = |centres: &Centres<S>| {
-                centres.trails.get(centre + 1) == Some(&centres.trails[centre])
+                centres.path_hashes.get(centre + 1) == Some(&centres.path_hashes[centre])
             };
             let alike_below = across(below);
             let alike_down = self
                 .above
                 .as_ref()
-                .is_some_and(|above| above.trails[centre] == below.trails[centre]);
+                .is_some_and(|above| above.path_hashes[centre] == below.path_hashes[centre]);
             let alike_above = self.above.as_ref().is_some_and(across);
             let alike = alike_above && alike_below && alike_down;
             if alike {
@@ -135,6 +135,6 @@ impl<S: Scalar> Bands<S> {
 
 /// The number at `share` of the way from one to another.
 #[inline(always)]
-fn mix<S: Scalar>(from: S, to: S, share: S) -> S {
+fn lerp<S: Scalar>(from: S, to: S, share: S) -> S {
     from + (to - from) * share
 }

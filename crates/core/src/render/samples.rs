@@ -69,16 +69,16 @@ pub(crate) fn half_steps<S: Scalar>(steps: i64) -> S {
 pub(crate) struct Colors<S> {
     pub(crate) channels: [Vec<S>; 3],
     /// What each saw, see [`Traced`]; none if nobody asks.
-    pub(crate) trails: Vec<u32>,
+    pub(crate) path_hashes: Vec<u32>,
 }
 
 impl<S: Scalar> Colors<S> {
-    /// Room for so many; for their trails too if somebody asks for them.
-    pub(crate) fn resize(&mut self, count: usize, trails: bool) {
+    /// Room for so many; for their path hashes too if somebody asks for them.
+    pub(crate) fn resize(&mut self, count: usize, path_hashes: bool) {
         for channel in &mut self.channels {
             channel.resize(count, S::literal(0.0));
         }
-        self.trails.resize(if trails { count } else { 0 }, 0);
+        self.path_hashes.resize(if path_hashes { count } else { 0 }, 0);
     }
 
     /// The colours of these samples.
@@ -92,14 +92,15 @@ impl<S: Scalar> Colors<S> {
     pub(crate) fn store<L: Lane<Scalar = S>>(
         &mut self,
         first: usize,
-        Traced { color, trail }: Traced<L>,
+        Traced { color, path_hash }: Traced<L>,
     ) {
         let [red, green, blue] = &mut self.channels;
         color.x.store(&mut red[first..]);
         color.y.store(&mut green[first..]);
         color.z.store(&mut blue[first..]);
-        if let Some(trails) = self.trails.get_mut(first..).filter(|trails| !trails.is_empty()) {
-            L::store_index(trail, trails);
+        if let Some(path_hashes) = self.path_hashes.get_mut(first..).filter(|rest| !rest.is_empty())
+        {
+            L::store_index(path_hash, path_hashes);
         }
     }
 }

@@ -87,7 +87,7 @@ pub trait Lane:
     /// The index in the first lane where the mask holds.
     fn first_index(mask: Self::Mask, indices: Self::Index) -> Option<u32>;
     /// A number that, as good as certainly, only these two in this order give; of 32 bits.
-    fn mix(index: Self::Index, with: Self::Index) -> Self::Index;
+    fn hash_combine(hash: Self::Index, with: Self::Index) -> Self::Index;
     /// Overwrites the first `LANES` numbers of `numbers`.
     ///
     /// # Panics
@@ -129,7 +129,7 @@ pub trait Scalar:
 
 /// An odd number near 2^32 over the golden ratio, which spreads what it multiplies (Knuth, The Art
 /// of Computer Programming 3, 1973, 6.4).
-pub(crate) const MIX: u32 = 0x9e37_79b1;
+pub(crate) const HASH_MULTIPLIER: u32 = 0x9e37_79b1;
 
 impl Mask for bool {
     #[inline(always)]
@@ -219,8 +219,8 @@ macro_rules! scalar {
                 mask.then_some(index)
             }
             #[inline(always)]
-            fn mix(index: u32, with: u32) -> u32 {
-                (index.rotate_left(5) ^ with).wrapping_mul(MIX)
+            fn hash_combine(hash: u32, with: u32) -> u32 {
+                (hash.rotate_left(5) ^ with).wrapping_mul(HASH_MULTIPLIER)
             }
             #[inline(always)]
             fn store_index(index: u32, numbers: &mut [u32]) {

@@ -4,7 +4,7 @@
 //! of one ray alone. Where the machine has no register of that width, `wide` uses several smaller
 //! ones.
 
-use crate::simd::lane::{Lane, MIX, Mask};
+use crate::simd::lane::{HASH_MULTIPLIER, Lane, Mask};
 use wide::{f32x8, f32x16, f64x4, f64x8, u32x8, u32x16, u64x4, u64x8};
 
 macro_rules! packet {
@@ -114,10 +114,10 @@ macro_rules! packet {
                 (lanes != 0).then(|| indices.to_array()[lanes.trailing_zeros() as usize] as u32)
             }
             #[inline(always)]
-            fn mix(index: $index, with: $index) -> $index {
+            fn hash_combine(hash: $index, with: $index) -> $index {
                 let low = $index::splat(u32::MAX.into());
-                let rotated = ((index << 5_u32) | (index >> 27_u32)) & low;
-                ((rotated ^ with) * $index::splat(MIX.into())) & low
+                let rotated = ((hash << 5_u32) | (hash >> 27_u32)) & low;
+                ((rotated ^ with) * $index::splat(HASH_MULTIPLIER.into())) & low
             }
             #[inline(always)]
             fn store_index(index: $index, numbers: &mut [u32]) {
