@@ -54,7 +54,7 @@ impl<S: Scalar, F: Family> World<S, F> {
     /// For rays that all start at `eye`, the camera's, and go forward; or else for any.
     pub(crate) fn new(scene: &Scene, eye: Option<DVec3>, acceleration: Acceleration) -> Self {
         // What is left out rests on the formulas' error bounds.
-        let acceleration = if F::FAITHFUL { acceleration } else { Acceleration::None };
+        let acceleration = if F::ERROR_BOUNDED { acceleration } else { Acceleration::None };
         let scene = match (eye, acceleration) {
             (Some(_), Acceleration::Auto) => &cull_behind(scene, S::ROUNDOFF),
             _ => scene,
@@ -66,7 +66,7 @@ impl<S: Scalar, F: Family> World<S, F> {
         }
         let cones_from = |point: DVec3| use_cones.then(|| ConeSet::new(scene, point));
         // Formulas that let a ray slip through a plane may bring it anywhere.
-        let confined = eye.filter(|_| F::FAITHFUL);
+        let confined = eye.filter(|_| F::ERROR_BOUNDED);
         let mirrors = scene.materials.iter().any(|material| material.reflection > 0.0);
         let shining = scene.lights.iter().filter(|light| light.color * light.power != DVec3::ZERO);
         let lights = shining.filter_map(|light| {

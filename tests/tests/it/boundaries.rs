@@ -41,7 +41,7 @@ fn dark_pixels(scene: &Scene, near: DVec3, normal: DVec3) -> usize {
     sums.iter().filter(|sum| **sum < 0.5 * brightest).count()
 }
 
-/// Catches a clearance that leaves out the shape's own coordinates: the plane is given by a point
+/// Catches an offset bound that leaves out the shape's own coordinates: the plane is given by a point
 /// far from what is seen of it.
 #[test]
 fn a_plane_anchored_far_away_does_not_shadow_itself() {
@@ -87,7 +87,7 @@ fn a_surface_through_a_light_does_not_hide_it() {
     }
 }
 
-/// Catches a clearance that leaves out corners far away.
+/// Catches an offset bound that leaves out corners far away.
 #[test]
 fn a_triangle_with_far_corners_does_not_shadow_itself() {
     let narrow = |v: DVec3| v.map(|x| f64::from(x as f32));

@@ -171,7 +171,7 @@ fn everywhere() -> Vec<(String, Scene)> {
     all
 }
 
-/// Catches a constant where a bound follows the coordinates, a clearance that is too small or a
+/// Catches a constant where a bound follows the coordinates, an offset bound that is too small or a
 /// choice of precision that comes too late.
 #[test]
 fn scale_and_place_are_not_seen() {

@@ -169,20 +169,22 @@ impl<S: Scalar> Primitives<S> {
             closest.offer::<true>(number, F::plane(plane, ray));
         }
         match (&self.bvh, from) {
-            (Some(bvh), _) if F::FAITHFUL => ray.by_direction_class(wanted, |class, wanted| {
-                let precomputed = self.precompute(ray, Some(class.order));
-                bvh.traverse(ray, class, wanted, closest.t, |leaf, reached| {
-                    self.closest_hit_in_leaf::<L, F>(
-                        leaf,
-                        ray,
-                        &precomputed,
-                        reached,
-                        &mut closest,
-                    );
-                    (wanted, closest.t)
+            (Some(bvh), _) if F::ERROR_BOUNDED => {
+                ray.by_direction_class(wanted, |class, wanted| {
+                    let precomputed = self.precompute(ray, Some(class.order));
+                    bvh.traverse(ray, class, wanted, closest.t, |leaf, reached| {
+                        self.closest_hit_in_leaf::<L, F>(
+                            leaf,
+                            ray,
+                            &precomputed,
+                            reached,
+                            &mut closest,
+                        );
+                        (wanted, closest.t)
+                    });
                 });
-            }),
-            (_, Some((cones, distance))) if F::FAITHFUL => {
+            }
+            (_, Some((cones, distance))) if F::ERROR_BOUNDED => {
                 cones.candidates((ray.direction, distance), wanted, |i, inside| {
                     let number = self.spheres.first + i as u32;
                     closest.offer::<true>(number, self.bounded_primitive::<L, F>(i, ray, inside));
@@ -214,7 +216,7 @@ impl<S: Scalar> Primitives<S> {
         if *triangles == empty {
             return;
         }
-        if !F::FAITHFUL {
+        if !F::ERROR_BOUNDED {
             return leaf(triangles, &for_others, wanted);
         }
         ray.by_axis(self.near_any_triangle(ray, wanted), |order, wanted| {
@@ -331,7 +333,7 @@ impl<S: Scalar> Primitives<S> {
             return wanted;
         }
         match (&self.bvh, &occluders.cones) {
-            (Some(bvh), _) if F::FAITHFUL => ray.by_direction_class(clear, |class, wanted| {
+            (Some(bvh), _) if F::ERROR_BOUNDED => ray.by_direction_class(clear, |class, wanted| {
                 let precomputed = self.precompute(ray, Some(class.order));
                 bvh.traverse(ray, class, wanted, limit, |leaf, reached| {
                     clear = clear
@@ -346,7 +348,7 @@ impl<S: Scalar> Primitives<S> {
                     (wanted & clear, limit)
                 });
             }),
-            (_, Some(cones)) if F::FAITHFUL => {
+            (_, Some(cones)) if F::ERROR_BOUNDED => {
                 cones.candidates((-path.to_light, path.distance), clear, |i, inside| {
                     clear = clear & !self.bounded_primitive::<L, F>(i, ray, inside).lt(limit);
                     clear
@@ -410,7 +412,7 @@ impl<S: Scalar> Primitives<S> {
         t: L,
     ) -> SurfacePoint<L> {
         let near = ray.at(t);
-        let mut at = F::settle(near, self.surface_near(number, near));
+        let mut at = F::snap_to_surface(near, self.surface_near(number, near));
         let behind = L::literal(0.0).lt(at.normal.dot(ray.direction));
         at.normal = Vector::select(behind, -at.normal, at.normal);
         at

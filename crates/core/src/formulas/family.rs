@@ -17,7 +17,7 @@ use std::fmt::Debug;
 pub(crate) trait Family: Debug + Send + Sync + 'static {
     /// Whether the formulas err by no more than a few roundings of the coordinates. Then boxes that
     /// are larger by some more of them are missed by no hit, and nothing is hit behind a plane.
-    const FAITHFUL: bool;
+    const ERROR_BOUNDED: bool;
 
     fn plane<L: Lane>(plane: &Plane<L::Scalar>, ray: &Ray<L>) -> L;
     fn sphere<L: Lane>(
@@ -40,7 +40,7 @@ pub(crate) trait Family: Debug + Send + Sync + 'static {
     ) -> L;
 
     /// What becomes of the hit `near` a surface, given the surface's own point next to it.
-    fn settle<L: Lane>(near: Vector<L>, on_surface: SurfacePoint<L>) -> SurfacePoint<L>;
+    fn snap_to_surface<L: Lane>(near: Vector<L>, on_surface: SurfacePoint<L>) -> SurfacePoint<L>;
 
     /// The ray along a path to a light, and the `t` that a surface has to be nearer than to hide
     /// it.

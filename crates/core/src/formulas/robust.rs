@@ -15,7 +15,7 @@ use crate::simd::vector::Vector;
 pub(crate) struct Robust;
 
 impl Family for Robust {
-    const FAITHFUL: bool = true;
+    const ERROR_BOUNDED: bool = true;
 
     #[inline(always)]
     fn plane<L: Lane>(plane: &Plane<L::Scalar>, ray: &Ray<L>) -> L {
@@ -52,15 +52,15 @@ impl Family for Robust {
         cylinder.intersect(ray, precomputed, wanted)
     }
 
-    /// The hit is moved onto the surface: what is left of its error is bounded by the clearance.
+    /// The hit is moved onto the surface: what is left of its error is bounded by the offset bound.
     #[inline(always)]
-    fn settle<L: Lane>(_near: Vector<L>, on_surface: SurfacePoint<L>) -> SurfacePoint<L> {
+    fn snap_to_surface<L: Lane>(_near: Vector<L>, on_surface: SurfacePoint<L>) -> SurfacePoint<L> {
         on_surface
     }
 
     /// `t` counts in the way to the light, and ends a little before 1: a surface that passes
     /// through the light does not hide it. Where such a surface lies is known to about 16 roundings
-    /// of the coordinates of both ends, as in the clearance of a hit.
+    /// of the coordinates of both ends, as in the offset bound of a hit.
     #[inline(always)]
     fn shadow_ray<L: Lane>(path: &LightPath<L>) -> (Ray<L>, L) {
         let uncertain = path.reach * path.inverse_distance * L::literal(16.0 * L::Scalar::ROUNDOFF);

@@ -19,7 +19,7 @@ pub(crate) struct Textbook;
 const OFFSET: f64 = 1e-3;
 
 impl Family for Textbook {
-    const FAITHFUL: bool = false;
+    const ERROR_BOUNDED: bool = false;
 
     #[inline(always)]
     fn plane<L: Lane>(plane: &Plane<L::Scalar>, ray: &Ray<L>) -> L {
@@ -87,8 +87,8 @@ impl Family for Textbook {
 
     /// The hit stays where `t` says, and rays leave from there.
     #[inline(always)]
-    fn settle<L: Lane>(near: Vector<L>, on_surface: SurfacePoint<L>) -> SurfacePoint<L> {
-        SurfacePoint { point: near, clearance: L::literal(0.0), ..on_surface }
+    fn snap_to_surface<L: Lane>(near: Vector<L>, on_surface: SurfacePoint<L>) -> SurfacePoint<L> {
+        SurfacePoint { point: near, offset_bound: L::literal(0.0), ..on_surface }
     }
 
     #[inline(always)]

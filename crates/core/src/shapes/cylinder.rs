@@ -1,7 +1,7 @@
 //! The open cylinder around a vertical axis: a circle in x and z, bounded in y.
 
 use super::aabb::Aabb;
-use super::{SurfacePoint, clearance, quadric};
+use super::{SurfacePoint, offset_bound, quadric};
 use crate::ray::{Ray, miss};
 use crate::scene;
 use crate::simd::lane::{Lane, Mask, Scalar};
@@ -105,6 +105,6 @@ impl<S: Scalar> Cylinder<S> {
         let on_axis = Vector::new(bottom.x, near.y, bottom.z);
         let point = on_axis + normal * radius;
         let reach = bottom.abs() + Vector::new(radius, zero, radius);
-        SurfacePoint { point, normal, clearance: clearance(normal, point, reach) }
+        SurfacePoint { point, normal, offset_bound: offset_bound(normal, point, reach) }
     }
 }

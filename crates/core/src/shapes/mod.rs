@@ -30,14 +30,14 @@ pub(crate) struct SurfacePoint<L> {
     pub(crate) normal: Vector<L>,
     /// How far from `point` a ray has to start, along the normal, to be on one side of the surface
     /// for certain.
-    pub(crate) clearance: L,
+    pub(crate) offset_bound: L,
 }
 
 impl<L: Lane> SurfacePoint<L> {
     /// Where rays that leave on the normal's side start.
     #[inline(always)]
     pub(crate) fn start(&self) -> Vector<L> {
-        self.point + self.normal * self.clearance
+        self.point + self.normal * self.offset_bound
     }
 
     #[inline(always)]
@@ -45,7 +45,7 @@ impl<L: Lane> SurfacePoint<L> {
         Self {
             point: Vector::select(mask, yes.point, no.point),
             normal: Vector::select(mask, yes.normal, no.normal),
-            clearance: L::select(mask, yes.clearance, no.clearance),
+            offset_bound: L::select(mask, yes.offset_bound, no.offset_bound),
         }
     }
 }
@@ -60,7 +60,7 @@ impl<L: Lane> SurfacePoint<L> {
 /// in its own distance. The idea, with gamma(3) to gamma(7), is that of pbrt ("Managing Rounding
 /// Error": Pharr, Jakob, Humphreys, 2016); unlike a constant it follows the scene's scale.
 #[inline(always)]
-fn clearance<L: Lane>(normal: Vector<L>, point: Vector<L>, reach: Vector<L>) -> L {
+fn offset_bound<L: Lane>(normal: Vector<L>, point: Vector<L>, reach: Vector<L>) -> L {
     use crate::simd::lane::Scalar;
     normal.abs().dot(point.abs() + reach) * L::literal(12.0 * L::Scalar::ROUNDOFF)
 }

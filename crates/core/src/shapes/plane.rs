@@ -1,6 +1,6 @@
 //! The infinite plane.
 
-use super::{SurfacePoint, clearance};
+use super::{SurfacePoint, offset_bound};
 use crate::ray::{Ray, miss};
 use crate::scene;
 use crate::simd::lane::{Lane, Scalar};
@@ -72,6 +72,6 @@ impl<S: Scalar> Plane<S> {
     pub(crate) fn surface<L: Lane<Scalar = S>>(&self, near: Vector<L>) -> SurfacePoint<L> {
         let (anchor, normal) = (Vector::splat(self.point), Vector::splat(self.unit_normal));
         let point = near - normal * normal.dot(near - anchor);
-        SurfacePoint { point, normal, clearance: clearance(normal, point, anchor.abs()) }
+        SurfacePoint { point, normal, offset_bound: offset_bound(normal, point, anchor.abs()) }
     }
 }

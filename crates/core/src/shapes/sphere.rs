@@ -1,7 +1,7 @@
 //! The sphere.
 
 use super::aabb::Aabb;
-use super::{SurfacePoint, clearance, quadric};
+use super::{SurfacePoint, offset_bound, quadric};
 use crate::ray::{Ray, miss};
 use crate::scene;
 use crate::simd::lane::{Lane, Mask, Scalar};
@@ -86,6 +86,6 @@ impl<S: Scalar> Sphere<S> {
         let normal = (near - center).unit();
         let point = center + normal * radius;
         let reach = center.abs() + Vector::new(radius, radius, radius);
-        SurfacePoint { point, normal, clearance: clearance(normal, point, reach) }
+        SurfacePoint { point, normal, offset_bound: offset_bound(normal, point, reach) }
     }
 }

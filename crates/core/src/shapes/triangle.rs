@@ -1,7 +1,7 @@
 //! The triangle, its edges included, without gaps to its neighbours.
 
 use super::aabb::Aabb;
-use super::{SurfacePoint, clearance};
+use super::{SurfacePoint, offset_bound};
 use crate::ray::{AxisOrder, Ray, miss};
 use crate::scene;
 use crate::simd::lane::{Lane, Mask, Scalar, sign_of_difference};
@@ -130,7 +130,7 @@ impl<S: Scalar> Triangle<S> {
         SurfacePoint {
             point,
             normal,
-            clearance: clearance(normal, point, Vector::splat(self.reach)),
+            offset_bound: offset_bound(normal, point, Vector::splat(self.reach)),
         }
     }
 }
