@@ -1,4 +1,4 @@
-//! From a place in the picture to a ray.
+//! From a position in the image to a ray.
 
 use crate::ray::Ray;
 use crate::scene::{self, unit};
@@ -7,7 +7,7 @@ use crate::simd::vector::Vector;
 
 /// The camera of a picture of a certain size and lattice density.
 ///
-/// Places are counted in half steps of the sampling lattice from the middle of the picture: whole
+/// Positions are counted in half steps of the sampling lattice from the middle of the picture: whole
 /// numbers, small enough to be exact in `f32`. So one lattice point is one pair of numbers,
 /// whichever pixel asks for it, and gives one ray, to the bit.
 #[derive(Clone, Copy, Debug)]
@@ -16,9 +16,9 @@ pub(crate) struct Camera<S> {
     /// The unit direction of the middle of the screen.
     forward: Vector<S>,
     /// Half a lattice step to the right, on a screen at distance 1.
-    right: Vector<S>,
+    x_step: Vector<S>,
     /// Half a lattice step downwards, on a screen at distance 1.
-    down: Vector<S>,
+    y_step: Vector<S>,
 }
 
 impl<S: Scalar> Camera<S> {
@@ -34,15 +34,15 @@ impl<S: Scalar> Camera<S> {
         Self {
             position: Vector::rounded(camera.position),
             forward: Vector::rounded(view),
-            right: Vector::rounded(right * half_step),
-            down: Vector::rounded(-up * half_step),
+            x_step: Vector::rounded(right * half_step),
+            y_step: Vector::rounded(-up * half_step),
         }
     }
 
-    /// The ray through the point `right`, `down` half lattice steps from the middle of the screen.
+    /// The ray through the point `x`, `y` half lattice steps from the middle of the screen.
     #[inline(always)]
-    pub(crate) fn ray<L: Lane<Scalar = S>>(&self, right: L, down: L) -> Ray<L> {
-        let across = Vector::splat(self.right) * right + Vector::splat(self.down) * down;
+    pub(crate) fn ray<L: Lane<Scalar = S>>(&self, x: L, y: L) -> Ray<L> {
+        let across = Vector::splat(self.x_step) * x + Vector::splat(self.y_step) * y;
         Ray {
             origin: Vector::splat(self.position),
             direction: (Vector::splat(self.forward) + across).unit(),

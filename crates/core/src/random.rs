@@ -4,7 +4,7 @@ use glam::DVec3;
 
 /// Any places in the unit cube, the same in every run: a linear congruential generator (Knuth, The
 /// Art of Computer Programming 2, 1981, 3.3.4).
-pub(crate) fn places() -> impl FnMut() -> DVec3 {
+pub(crate) fn random_points() -> impl FnMut() -> DVec3 {
     let mut state = 1_u64;
     let mut number = move || {
         state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);

@@ -48,19 +48,19 @@ impl<S: Scalar> BoundingSphere<S> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::places;
+    use crate::random::random_points;
     use crate::ray::miss;
     use crate::shapes::triangle::{RayPrecomputation, Triangle};
 
     /// Rays that graze the sphere where a corner of the triangle touches it: none that hits the
     /// triangle is ruled out, and those that pass a tenth of the radius farther out are.
     fn grazing_rays_are_told_apart<S: Scalar>() {
-        let mut place = places();
+        let mut point = random_points();
         let mut hits = 0;
         for i in 0..10_000 {
             let size = [1e-3, 0.1, 10.0][i % 3];
-            let offset = place() * [0.0, 1e3][i % 2];
-            let vertices = [place(), place(), place()].map(|v| offset + v * size);
+            let offset = point() * [0.0, 1e3][i % 2];
+            let vertices = [point(), point(), point()].map(|v| offset + v * size);
             let triangle = scene::Triangle { vertices, material: 0 };
             let (center, radius) = triangle.around();
             let aside = |v: &glam::DVec3| (*v - center).length();
@@ -69,7 +69,7 @@ mod tests {
                 .max_by(|a, b| aside(a).total_cmp(&aside(b)))
                 .unwrap_or_default();
             let outward = (corner - center).normalize();
-            let along = outward.cross(place() - 0.5).normalize();
+            let along = outward.cross(point() - 0.5).normalize();
             let ray = |target: glam::DVec3| Ray::<S> {
                 origin: Vector::rounded(target - along * size * [0.1, 10.0, 1e3][i / 6 % 3]),
                 direction: Vector::<S>::rounded(along).unit(),

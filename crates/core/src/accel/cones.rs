@@ -94,7 +94,7 @@ impl<S: Scalar> ConeSet<S> {
         }
     }
 
-    /// Shows `found` each primitive whose cone some ray of `wanted` is in, by its place among those
+    /// Shows `found` each primitive whose cone some ray of `wanted` is in, by its index among those
     /// that are not planes, in order, and these rays; `found` returns the rays that still want to
     /// know. The rays' unit directions away from the point, and their lengths, are `(direction,
     /// length)`.
@@ -183,26 +183,26 @@ impl<L: Lane> Cone<L> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::places;
+    use crate::random::random_points;
     use std::array::from_fn;
     use wide::{f32x8, f64x4};
 
     /// Packets of rays next to each other, some closer together than `SPREAD` and some not:
     /// whatever the cone of any ray holds is shown, as if each cone were asked for each ray.
     fn no_cone_is_left_out<L: Lane>() {
-        let mut place = places();
+        let mut point = random_points();
         let (mut together, mut shown) = (0, 0);
         for _ in 0..100_000 {
-            let spheres: [_; 11] = from_fn(|_| (place() * 4.0 - 2.0, 0.1 + place().x * 0.6));
-            let cones = ConeSet::<L::Scalar>::of(spheres.into_iter(), place());
-            let (middle, apart) = ((place() - 0.5).normalize(), 0.05 + place().x * 0.025);
+            let spheres: [_; 11] = from_fn(|_| (point() * 4.0 - 2.0, 0.1 + point().x * 0.6));
+            let cones = ConeSet::<L::Scalar>::of(spheres.into_iter(), point());
+            let (middle, apart) = ((point() - 0.5).normalize(), 0.05 + point().x * 0.025);
             let aside = |lane: usize| {
-                if lane == 0 { DVec3::ZERO } else { (place() - 0.5).normalize() * apart }
+                if lane == 0 { DVec3::ZERO } else { (point() - 0.5).normalize() * apart }
             };
             let rays: [DVec3; 8] = from_fn(aside).map(|aside| (middle + aside).normalize());
             let of = |axis: usize| L::from_fn(|lane| Scalar::from_f64(rays[lane][axis]));
             let direction = Vector::new(of(0), of(1), of(2));
-            let length = L::literal(place().x * 20.0);
+            let length = L::literal(point().x * 20.0);
             let all = L::first_lanes(L::LANES);
 
             let mut found = Vec::new();

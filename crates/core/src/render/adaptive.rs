@@ -5,7 +5,7 @@
 //! whoever computes it decides alike, whichever tile it is in.
 
 use crate::render::lattice::LatticeSums;
-use crate::render::samples::{Colors, Places, half_steps};
+use crate::render::samples::{Colors, SamplePositions, lattice_distance};
 use crate::simd::lane::Scalar;
 
 /// The centres of a row of pixels and of one more on either side.
@@ -34,11 +34,11 @@ impl<S: Scalar> Bands<S> {
         Self { density, count: width + 2, above: None, below: None, mixed: Default::default() }
     }
 
-    /// The places of the next row of centres, on row 0.
-    pub(crate) fn place_centres(&self, places: &mut Places<S>) {
-        places.clear();
+    /// The positions of the next row of centres, on row 0.
+    pub(crate) fn position_centres(&self, positions: &mut SamplePositions<S>) {
+        positions.clear();
         for centre in 0..self.count {
-            places.push(half_steps((centre * self.density) as i64), S::literal(0.0));
+            positions.push(lattice_distance((centre * self.density) as i64), S::literal(0.0));
         }
     }
 
@@ -51,14 +51,18 @@ impl<S: Scalar> Bands<S> {
         self.above = self.below.replace(centres);
     }
 
-    /// Interpolates the band that ends with the row of centres, its last row. `places` are those of
+    /// Interpolates the band that ends with the row of centres, its last row. `positions` are those of
     /// the points whose centres do not look alike, counted from its first row: their colours are
     /// what `sums` expects.
-    pub(crate) fn interpolate(&mut self, sums: &mut LatticeSums<'_, S>, places: &mut Places<S>) {
-        places.clear();
+    pub(crate) fn interpolate(
+        &mut self,
+        sums: &mut LatticeSums<'_, S>,
+        positions: &mut SamplePositions<S>,
+    ) {
+        positions.clear();
         sums.start_strip(self.density);
         self.interpolate_all(sums);
-        self.place_unlike(sums, places);
+        self.position_unlike(sums, positions);
     }
 
     /// Every point, also where the centres do not look alike: all together, that is quicker than to
@@ -68,34 +72,32 @@ impl<S: Scalar> Bands<S> {
         let Some(below) = &self.below else { return };
         let share = |steps: usize| S::from_f64(steps as f64 / density as f64);
         let [top, bottom] = &mut self.mixed;
-        for (aside, channel) in
-            (0..density).flat_map(|aside| (0..3).map(move |channel| (aside, channel)))
-        {
-            let (right, across) = (usize::from(aside > 0), share(aside));
+        for (dx, channel) in (0..density).flat_map(|dx| (0..3).map(move |channel| (dx, channel))) {
+            let (next, across) = (usize::from(dx > 0), share(dx));
             let lerp_across = |centres: &Centres<S>, mixed: &mut Vec<S>| {
                 let colors = &centres.colors[channel];
-                let pairs = colors.iter().zip(&colors[right..]);
+                let pairs = colors.iter().zip(&colors[next..]);
                 mixed.clear();
                 mixed.extend(pairs.map(|(&from, &to)| lerp(from, to, across)));
             };
             lerp_across(below, bottom);
-            sums.points_mut(channel, aside, last)[..bottom.len()].copy_from_slice(bottom);
+            sums.points_mut(channel, dx, last)[..bottom.len()].copy_from_slice(bottom);
             // Above the first row of centres the lattice has nothing.
             let Some(above) = &self.above else { continue };
             lerp_across(above, top);
             for row in 0..last {
-                let down = share(row + 1);
-                let points = sums.points_mut(channel, aside, row).iter_mut();
+                let dy = share(row + 1);
+                let points = sums.points_mut(channel, dx, row).iter_mut();
                 for ((point, &top), &bottom) in points.zip(&*top).zip(&*bottom) {
-                    *point = lerp(top, bottom, down);
+                    *point = lerp(top, bottom, dy);
                 }
             }
         }
     }
 
-    /// Places the points whose centres do not look alike, cell by cell, each from a centre to the
+    /// SamplePositions the points whose centres do not look alike, cell by cell, each from a centre to the
     /// next one right and the next one down: so those that follow each other are neighbours.
-    fn place_unlike(&self, sums: &mut LatticeSums<'_, S>, places: &mut Places<S>) {
+    fn position_unlike(&self, sums: &mut LatticeSums<'_, S>, positions: &mut SamplePositions<S>) {
         let (density, last) = (self.density, self.density - 1);
         let Some(below) = &self.below else { return };
         for centre in 0..self.count {
@@ -114,18 +116,18 @@ impl<S: Scalar> Bands<S> {
             }
             let first_row = if self.above.is_some() { 0 } else { last };
             let columns = if centre + 1 < self.count { density } else { 1 };
-            for (row, aside) in
-                (first_row..density).flat_map(|row| (0..columns).map(move |aside| (row, aside)))
+            for (row, dx) in
+                (first_row..density).flat_map(|row| (0..columns).map(move |dx| (row, dx)))
             {
-                let known = match (row == last, aside == 0) {
+                let known = match (row == last, dx == 0) {
                     (true, true) => true,
                     (true, false) => alike_below,
                     (false, true) => alike_down,
                     (false, false) => alike,
                 };
                 if !known {
-                    let column = centre * density + aside;
-                    places.push(half_steps(column as i64), half_steps(row as i64));
+                    let column = centre * density + dx;
+                    positions.push(lattice_distance(column as i64), lattice_distance(row as i64));
                     sums.expect(column, row);
                 }
             }

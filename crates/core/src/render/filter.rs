@@ -1,7 +1,7 @@
 //! The filter `exp(-(dx^2 + dy^2) / 0.64)` over the square out to one pixel from a pixel's centre,
 //! as a sum over samples. It is the product of the same function of each coordinate.
 
-use crate::render::samples::{Colors, Places};
+use crate::render::samples::{Colors, SamplePositions};
 use crate::scene::RenderSettings;
 use crate::simd::lane::Scalar;
 use crate::simd::vector::Vector;
@@ -11,9 +11,9 @@ use rayweave_contract::Rgb;
 #[derive(Clone, Debug)]
 pub(crate) struct Filter<S> {
     rows: Vec<Row<S>>,
-    /// Right and down of all samples.
-    places: Places<S>,
-    /// The unit of places: so many half steps are half a pixel.
+    /// The offsets of all samples from the centre.
+    positions: SamplePositions<S>,
+    /// The unit of positions: so many half steps are half a pixel.
     density: u32,
     /// Of each sample across a pixel, if the samples are on a square lattice.
     lattice: Option<Vec<S>>,
@@ -23,7 +23,7 @@ pub(crate) struct Filter<S> {
 #[derive(Clone, Debug)]
 pub(crate) struct Row<S> {
     /// Below the pixel's centre, in half steps.
-    pub(crate) down: S,
+    pub(crate) dy: S,
     /// Of the row; those of all rows have a sum of 1 but for rounding.
     pub(crate) weight: S,
     pub(crate) samples: Vec<Sample<S>>,
@@ -33,7 +33,7 @@ pub(crate) struct Row<S> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sample<S> {
     /// To the right of the pixel's centre, in half steps.
-    pub(crate) right: S,
+    pub(crate) dx: S,
     /// Within the row, where the sum is 1 but for rounding.
     pub(crate) weight: S,
 }
@@ -48,13 +48,13 @@ impl<S: Scalar> Filter<S> {
     }
 
     fn of_rows(rows: Vec<Row<S>>, density: u32, lattice: Option<Vec<S>>) -> Self {
-        let mut places = Places::default();
+        let mut positions = SamplePositions::default();
         for row in &rows {
             for sample in &row.samples {
-                places.push(sample.right, row.down);
+                positions.push(sample.dx, row.dy);
             }
         }
-        Self { places, rows, density, lattice }
+        Self { positions, rows, density, lattice }
     }
 
     /// Half steps from a pixel's edge to its centre.
@@ -68,14 +68,14 @@ impl<S: Scalar> Filter<S> {
         self.lattice.as_deref()
     }
 
-    /// Right and down of each sample, row by row.
-    pub(crate) fn places(&self) -> &Places<S> {
-        &self.places
+    /// The offset of each sample from the centre, row by row.
+    pub(crate) fn positions(&self) -> &SamplePositions<S> {
+        &self.positions
     }
 
     /// Neighbouring pixels, the first one's samples' colours beginning at number `first`.
     pub(crate) fn sums(&self, colors: &Colors<S>, first: usize, pixels: &mut [Rgb]) {
-        let samples = self.places.len();
+        let samples = self.positions.len();
         if samples == 1 {
             // The general sum is a noticeable share of such a rendering.
             let here = colors.range(first..first + pixels.len());
@@ -94,7 +94,7 @@ impl<S: Scalar> Filter<S> {
     /// Each row of samples is summed from the left, then the rows from the top: a fixed order, and
     /// one in which a row's sum serves every pixel that needs it.
     fn sum(&self, colors: &Colors<S>, first: usize) -> Rgb {
-        let mut sample_colors = colors.range(first..first + self.places.len());
+        let mut sample_colors = colors.range(first..first + self.positions.len());
         let mut color = Vector::zero();
         for row in &self.rows {
             let mut row_color = Vector::zero();
@@ -107,7 +107,7 @@ impl<S: Scalar> Filter<S> {
         color.to_array().map(S::to_f32)
     }
 
-    /// `(2 s + 1)^2` samples of a square lattice with `s` steps a pixel. Places are whole numbers
+    /// `(2 s + 1)^2` samples of a square lattice with `s` steps a pixel. Positions are whole numbers
     /// of half steps, so neighbouring pixels share them to the bit.
     fn lattice(density: u32) -> Self {
         let reach = f64::from(density);
@@ -117,12 +117,12 @@ impl<S: Scalar> Filter<S> {
         let sum: f64 = steps().map(weight).sum();
         let samples: Vec<Sample<S>> = steps()
             .map(|step| Sample {
-                right: S::from_f64(2.0 * step),
+                dx: S::from_f64(2.0 * step),
                 weight: S::from_f64(weight(step) / sum),
             })
             .collect();
         let row = |sample: &Sample<S>| Row {
-            down: sample.right,
+            dy: sample.dx,
             weight: sample.weight,
             samples: samples.clone(),
         };
@@ -148,9 +148,9 @@ impl<S: Scalar> Filter<S> {
         let row = |column: u64| {
             let row = (column * u64::from(generator) + shift) % u64::from(count);
             Row {
-                down: half_pixels(row),
+                dy: half_pixels(row),
                 weight: S::from_f64(1.0 / f64::from(count)),
-                samples: vec![Sample { right: half_pixels(column), weight: S::from_f64(1.0) }],
+                samples: vec![Sample { dx: half_pixels(column), weight: S::from_f64(1.0) }],
             }
         };
         Self::of_rows((0..u64::from(count)).map(row).collect(), 1, None)
@@ -175,7 +175,7 @@ fn greatest_common_divisor(a: u32, b: u32) -> u32 {
     if b == 0 { a } else { greatest_common_divisor(b, a % b) }
 }
 
-/// The place, in pixels from -1 to 1, below which the share `share` of the filter lies, in one
+/// The position, in pixels from -1 to 1, below which the share `share` of the filter lies, in one
 /// coordinate: the inverse of `(1 + erf(x / 0.8) / erf(1 / 0.8)) / 2`.
 fn filter_quantile(share: f64) -> f64 {
     let wanted = (2.0 * share - 1.0).abs() * libm::erf(1.0 / 0.8);
@@ -195,7 +195,7 @@ mod tests {
 
     fn importance(count: u32) -> Vec<(f64, f64)> {
         let filter = Filter::<f64>::importance(count);
-        filter.rows.iter().map(|row| (row.samples[0].right / 2.0, row.down / 2.0)).collect()
+        filter.rows.iter().map(|row| (row.samples[0].dx / 2.0, row.dy / 2.0)).collect()
     }
 
     /// Catches a sum other than 1, of either pattern: a plain surface would change its colour.
@@ -221,20 +221,20 @@ mod tests {
     }
 
     /// Catches a shift that breaks the symmetry, a generator that puts two samples into one row,
-    /// and a place outside of the filter.
+    /// and a position outside of the filter.
     #[test]
     fn importance_samples_are_symmetric_and_in_rows_of_their_own() {
         for count in [1, 5, 9, 13, 25, 41, 145, 289, 1089] {
-            let mut places = importance(count);
-            assert!(places.iter().all(|(x, y)| x.abs() < 1.0 && y.abs() < 1.0));
-            for (x, y) in &places {
+            let mut positions = importance(count);
+            assert!(positions.iter().all(|(x, y)| x.abs() < 1.0 && y.abs() < 1.0));
+            for (x, y) in &positions {
                 let opposite =
-                    places.iter().any(|(a, b)| (a + x).abs() < 1e-15 && (b + y).abs() < 1e-15);
+                    positions.iter().any(|(a, b)| (a + x).abs() < 1e-15 && (b + y).abs() < 1e-15);
                 assert!(opposite, "{count}: ({x}, {y}) has no opposite");
             }
-            places.sort_by(|a, b| a.1.total_cmp(&b.1));
+            positions.sort_by(|a, b| a.1.total_cmp(&b.1));
             assert!(
-                places.windows(2).all(|pair| pair[0].1 < pair[1].1),
+                positions.windows(2).all(|pair| pair[0].1 < pair[1].1),
                 "{count}: two samples in a row"
             );
         }
@@ -252,9 +252,9 @@ mod tests {
         };
         let filter = |x: f64| libm::exp(-x * x / 0.64);
         let moment = simpson(&|x| x * x * filter(x)) / simpson(&filter);
-        let places = importance(4225);
+        let positions = importance(4225);
         let found = |of: fn(&(f64, f64)) -> f64| {
-            places.iter().map(of).map(|x| x * x).sum::<f64>() / places.len() as f64
+            positions.iter().map(of).map(|x| x * x).sum::<f64>() / positions.len() as f64
         };
         assert!(
             (found(|p| p.0) - moment).abs() < 1e-6,

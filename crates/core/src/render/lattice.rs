@@ -76,12 +76,12 @@ impl<'a, S: Scalar> LatticeSums<'a, S> {
         }
     }
 
-    /// Of one channel and a row of the strip, the colours of the points `aside` steps right of each
+    /// Of one channel and a row of the strip, the colours of the points `dx` steps right of each
     /// pixel centre, from that left of the tile to that right of it: of the latter only with none,
-    /// the lattice ends there. `aside` is below the density.
+    /// the lattice ends there. `dx` is below the density.
     #[inline(always)]
-    pub(crate) fn points_mut(&mut self, channel: usize, aside: usize, row: usize) -> &mut [S] {
-        let first = self.slot(aside, row);
+    pub(crate) fn points_mut(&mut self, channel: usize, dx: usize, row: usize) -> &mut [S] {
+        let first = self.slot(dx, row);
         &mut self.strip[channel][first..first + self.width + 2]
     }
 

@@ -49,25 +49,25 @@ mod tests {
         RenderSettings { antialiasing, sampling, ..RenderSettings::default() }
     }
 
-    /// Catches a step or an edge too many: the places of all pixels' samples, each place once.
+    /// Catches a step or an edge too many: the positions of all pixels' samples, each position once.
     #[test]
-    fn a_shared_tile_takes_each_place_of_its_pixels_samples_once() {
+    fn a_shared_tile_takes_each_position_of_its_pixels_samples_once() {
         for density in [1, 2, 3, 5, 32] {
             let settings = settings(density, Sampling::Lattice);
             let filter = Filter::<f64>::new(&settings);
             let samples: Vec<(f64, f64)> =
-                (0..filter.places().len()).map(|i| filter.places().load(i)).collect();
+                (0..filter.positions().len()).map(|i| filter.positions().load(i)).collect();
             for (width, height) in [(1, 1), (1, 4), (3, 1), (5, 3)] {
-                let mut places = BTreeSet::new();
+                let mut positions = BTreeSet::new();
                 for (x, y) in (0..width).flat_map(|x| (0..height).map(move |y| (x, y))) {
                     // Whole numbers of half steps, of which a pixel has `2 s`.
                     let centre = |pixel: u32| i64::from(2 * density * pixel);
-                    places.extend(
+                    positions.extend(
                         samples.iter().map(|&(a, b)| (centre(x) + a as i64, centre(y) + b as i64)),
                     );
                 }
                 let found = primary_rays(width, height, &settings, true);
-                assert_eq!(found, Some(places.len() as u64), "{width} x {height} at {density}");
+                assert_eq!(found, Some(positions.len() as u64), "{width} x {height} at {density}");
             }
         }
     }

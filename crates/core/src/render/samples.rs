@@ -6,61 +6,61 @@ use crate::trace::Traced;
 use std::iter::repeat_n;
 use std::ops::Range;
 
-/// Places, in half steps of the filter's: from the middle of the picture or, of a filter's samples,
+/// Positions, in half steps of the filter's: from the middle of the picture or, of a filter's samples,
 /// from the centre of a pixel.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Places<S> {
-    right: Vec<S>,
-    down: Vec<S>,
+pub(crate) struct SamplePositions<S> {
+    xs: Vec<S>,
+    ys: Vec<S>,
 }
 
-impl<S: Scalar> Places<S> {
+impl<S: Scalar> SamplePositions<S> {
     pub(crate) fn len(&self) -> usize {
-        self.right.len()
+        self.xs.len()
     }
 
     pub(crate) fn clear(&mut self) {
-        self.right.clear();
-        self.down.clear();
+        self.xs.clear();
+        self.ys.clear();
     }
 
-    pub(crate) fn push(&mut self, right: S, down: S) {
-        self.right.push(right);
-        self.down.push(down);
+    pub(crate) fn push(&mut self, x: S, y: S) {
+        self.xs.push(x);
+        self.ys.push(y);
     }
 
-    /// Adds, for each pixel's centre (one of `rights`, `down`) in turn, the places of all of its
+    /// Adds, for each pixel's centre (one of `xs`, `y`) in turn, the positions of all of its
     /// `samples` in their order.
     #[inline(always)]
-    pub(crate) fn push_around(&mut self, rights: &[S], down: S, samples: &Self) {
+    pub(crate) fn push_around(&mut self, xs: &[S], y: S, samples: &Self) {
         // With one sample a pixel the general loop is a noticeable share of a rendering.
-        if let ([aside], [below]) = (&*samples.right, &*samples.down) {
-            self.right.extend(rights.iter().map(|&right| right + *aside));
-            self.down.extend(repeat_n(down + *below, rights.len()));
+        if let ([dx], [dy]) = (&*samples.xs, &*samples.ys) {
+            self.xs.extend(xs.iter().map(|&x| x + *dx));
+            self.ys.extend(repeat_n(y + *dy, xs.len()));
             return;
         }
-        for &right in rights {
-            self.right.extend(samples.right.iter().map(|&aside| right + aside));
-            self.down.extend(samples.down.iter().map(|&below| down + below));
+        for &x in xs {
+            self.xs.extend(samples.xs.iter().map(|&dx| x + dx));
+            self.ys.extend(samples.ys.iter().map(|&dy| y + dy));
         }
     }
 
-    /// The places from number `first` on: right and down. Lanes beyond the last repeat some of
+    /// The positions from number `first` on: x and y. Lanes beyond the last repeat some of
     /// them.
     #[inline(always)]
     pub(crate) fn load<L: Lane<Scalar = S>>(&self, first: usize) -> (L, L) {
         if first + L::LANES <= self.len() {
-            return (L::load(&self.right[first..]), L::load(&self.down[first..]));
+            return (L::load(&self.xs[first..]), L::load(&self.ys[first..]));
         }
         let filled =
             |numbers: &[S]| L::from_fn(|lane| numbers[first + lane % (numbers.len() - first)]);
-        (filled(&self.right), filled(&self.down))
+        (filled(&self.xs), filled(&self.ys))
     }
 }
 
-/// So many steps of the lattice, as a distance between places: exactly.
+/// So many steps of the lattice, as a distance between positions: exactly.
 #[inline(always)]
-pub(crate) fn half_steps<S: Scalar>(steps: i64) -> S {
+pub(crate) fn lattice_distance<S: Scalar>(steps: i64) -> S {
     S::from_f64(2.0 * steps as f64)
 }
 

@@ -7,7 +7,7 @@ use crate::render::adaptive::Bands;
 use crate::render::filter::Filter;
 use crate::render::lattice::LatticeSums;
 use crate::render::sample_count::lattice_points;
-use crate::render::samples::{Colors, Places, half_steps};
+use crate::render::samples::{Colors, SamplePositions, lattice_distance};
 use crate::scene::{Scene, SceneError};
 use crate::simd::lane::{Lane, Scalar};
 use crate::trace::World;
@@ -17,7 +17,7 @@ use std::marker::PhantomData;
 use std::ops::Range;
 
 /// The work of rendering `scene` into a picture of `width` x `height` pixels, up to the 65,535 of a
-/// scene file each: places in larger ones are not exact.
+/// scene file each: positions in larger ones are not exact.
 ///
 /// # Errors
 ///
@@ -88,24 +88,25 @@ impl<L: Lane, F: Family> Tracer<L, F> {
         }
     }
 
-    /// The colour at each place, counted from `(right, down)`, in packets of neighbours in the
+    /// The colour at each position, counted from `(x, y)`, in packets of neighbours in the
     /// list.
     fn trace(
         &self,
-        places: &Places<L::Scalar>,
-        (right, down): (L::Scalar, L::Scalar),
+        positions: &SamplePositions<L::Scalar>,
+        (x, y): (L::Scalar, L::Scalar),
         colors: &mut Colors<L::Scalar>,
     ) {
-        colors.resize(places.len().next_multiple_of(L::LANES), self.adaptive);
-        for first in (0..places.len()).step_by(L::LANES) {
-            let (aside, below) = places.load::<L>(first);
-            let ray = self.camera.ray(L::splat(right) + aside, L::splat(down) + below);
-            colors.store(first, self.world.trace(ray, L::first_lanes(places.len() - first), true));
+        colors.resize(positions.len().next_multiple_of(L::LANES), self.adaptive);
+        for first in (0..positions.len()).step_by(L::LANES) {
+            let (dx, dy) = positions.load::<L>(first);
+            let ray = self.camera.ray(L::splat(x) + dx, L::splat(y) + dy);
+            colors
+                .store(first, self.world.trace(ray, L::first_lanes(positions.len() - first), true));
         }
     }
 
     /// The centre of pixel `x` along an axis of `extent` pixels, in half steps of the filter's from
-    /// the middle of the picture: a whole number below 2^23. So places on the lattice are exact in
+    /// the middle of the picture: a whole number below 2^23. So positions on the lattice are exact in
     /// `f32`; others are rounded there, to 1/512 of a pixel in the widest picture and 1/65536 in
     /// one of 500.
     fn centre(&self, x: u32, extent: u32) -> L::Scalar {
@@ -113,37 +114,38 @@ impl<L: Lane, F: Family> Tracer<L, F> {
         Scalar::from_f64((i64::from(self.filter.density()) * half_pixels) as f64)
     }
 
-    /// The place of the first lattice point of a tile, a pixel before the centre of its first one.
+    /// The position of the first lattice point of a tile, a pixel before the centre of its first one.
     fn corner(&self, rect: Rect) -> (L::Scalar, L::Scalar) {
-        let back = half_steps(-i64::from(self.filter.density()));
+        let back = lattice_distance(-i64::from(self.filter.density()));
         (self.centre(rect.x, self.width) + back, self.centre(rect.y, self.height) + back)
     }
 
     /// Every pixel with samples of its own.
     fn render_alone(&self, tile: &mut Tile<'_>) {
         let rect = tile.rect();
-        let rights: Vec<L::Scalar> =
+        let xs: Vec<L::Scalar> =
             (0..rect.width).map(|x| self.centre(rect.x + x, self.width)).collect();
-        let downs: Vec<L::Scalar> =
+        let ys: Vec<L::Scalar> =
             (0..rect.height).map(|y| self.centre(rect.y + y, self.height)).collect();
-        let samples = self.filter.places();
+        let samples = self.filter.positions();
         // The widest block of which a row's samples fit into a batch; a pixel if not even these do.
         let side = (BATCH / samples.len()).clamp(1, BLOCK);
         let runs_a_batch = (BATCH / (side * samples.len())).max(1);
-        let (mut runs, mut places, mut colors) = (Vec::new(), Places::default(), Colors::default());
-        for top in (0..downs.len()).step_by(side) {
+        let (mut runs, mut positions, mut colors) =
+            (Vec::new(), SamplePositions::default(), Colors::default());
+        for top in (0..ys.len()).step_by(side) {
             // Of a narrow tile the strips, and so the packets, are not full: to put several
             // together costs all others more.
             runs.clear();
-            let strip = top..downs.len().min(top + side);
-            for_each_run(rights.len(), strip, side, |columns, row| runs.push((columns, row)));
+            let strip = top..ys.len().min(top + side);
+            for_each_run(xs.len(), strip, side, |columns, row| runs.push((columns, row)));
             for batch in runs.chunks(runs_a_batch) {
-                places.clear();
+                positions.clear();
                 for (columns, row) in batch {
-                    places.push_around(&rights[columns.clone()], downs[*row], samples);
+                    positions.push_around(&xs[columns.clone()], ys[*row], samples);
                 }
                 let zero = L::Scalar::literal(0.0);
-                self.trace(&places, (zero, zero), &mut colors);
+                self.trace(&positions, (zero, zero), &mut colors);
                 let mut first = 0;
                 for (columns, row) in batch {
                     self.filter.sums(&colors, first, &mut tile.row_mut(*row)[columns.clone()]);
@@ -159,24 +161,25 @@ impl<L: Lane, F: Family> Tracer<L, F> {
         let [columns, rows] =
             [rect.width, rect.height].map(|pixels| lattice_points(pixels, density) as usize);
         let (left, top) = self.corner(rect);
-        let (mut places, mut colors) = (Places::default(), Colors::default());
+        let (mut positions, mut colors) = (SamplePositions::default(), Colors::default());
         let mut sums = LatticeSums::new(weights, density as usize, rect.width as usize);
         let mut height = 0;
         for first_row in (0..rows).step_by(BLOCK) {
-            // All strips of a tile have the same places but the last, which may be lower.
+            // All strips of a tile have the same positions but the last, which may be lower.
             let strip = BLOCK.min(rows - first_row);
             if strip != height {
                 height = strip;
-                places.clear();
+                positions.clear();
                 sums.start_strip(strip);
                 for_each_run(columns, 0..strip, BLOCK, |run, row| {
                     for column in run {
-                        places.push(half_steps(column as i64), half_steps(row as i64));
+                        positions
+                            .push(lattice_distance(column as i64), lattice_distance(row as i64));
                         sums.expect(column, row);
                     }
                 });
             }
-            self.trace(&places, (left, top + half_steps(first_row as i64)), &mut colors);
+            self.trace(&positions, (left, top + lattice_distance(first_row as i64)), &mut colors);
             sums.fill(&colors);
             for row in first_row..first_row + strip {
                 sums.add_row(row - first_row, row, tile);
@@ -188,18 +191,18 @@ impl<L: Lane, F: Family> Tracer<L, F> {
     fn render_adaptive(&self, tile: &mut Tile<'_>, weights: &[L::Scalar]) {
         let (rect, density) = (tile.rect(), self.filter.density());
         let (left, top) = self.corner(rect);
-        let (mut places, mut colors) = (Places::default(), Colors::default());
+        let (mut positions, mut colors) = (SamplePositions::default(), Colors::default());
         let mut sums = LatticeSums::new(weights, density as usize, rect.width as usize);
         let mut bands = Bands::new(density as usize, rect.width as usize);
         for centres in 0..rect.height + 2 {
             // The band ends at lattice row `last`; of the first one there is this row only.
             let last = i64::from(centres * density);
-            bands.place_centres(&mut places);
-            self.trace(&places, (left, top + half_steps(last)), &mut colors);
+            bands.position_centres(&mut positions);
+            self.trace(&positions, (left, top + lattice_distance(last)), &mut colors);
             bands.take_centres(&colors);
-            bands.interpolate(&mut sums, &mut places);
+            bands.interpolate(&mut sums, &mut positions);
             let first = last + 1 - i64::from(density);
-            self.trace(&places, (left, top + half_steps(first)), &mut colors);
+            self.trace(&positions, (left, top + lattice_distance(first)), &mut colors);
             sums.fill(&colors);
             for row in first.max(0)..=last {
                 sums.add_row((row - first) as usize, row as usize, tile);
