@@ -14,7 +14,7 @@ use crate::shapes::SurfacePoint;
 use crate::shapes::aabb::Aabb;
 use crate::shapes::cylinder::{self, Cylinder};
 use crate::shapes::plane::Plane;
-use crate::shapes::shape_list::{Kind, Leaf};
+use crate::shapes::shape_list::{Leaf, ShapeList};
 use crate::shapes::sphere::{self, Sphere};
 use crate::shapes::triangle::{self, Triangle};
 use crate::simd::lane::{Lane, Mask, Scalar};
@@ -29,9 +29,9 @@ const BVH_MIN_PRIMITIVES: usize = 64;
 #[derive(Debug)]
 pub(crate) struct Primitives<S> {
     planes: Vec<Plane<S>>,
-    spheres: Kind<Sphere<S>>,
-    triangles: Kind<Triangle<S>>,
-    cylinders: Kind<Cylinder<S>>,
+    spheres: ShapeList<Sphere<S>>,
+    triangles: ShapeList<Triangle<S>>,
+    cylinders: ShapeList<Cylinder<S>>,
     /// All triangles, and all others that are not planes.
     triangles_and_others: [Leaf; 2],
     /// Over these, where there are enough of them.
@@ -56,9 +56,9 @@ impl<S: Scalar> Primitives<S> {
         let cylinders_from = triangles_from + scene.triangles.len();
         let mut primitives = Self {
             planes: scene.planes.iter().map(Plane::new).collect(),
-            spheres: Kind::new(&scene.spheres, spheres_from, Sphere::new),
-            triangles: Kind::new(&scene.triangles, triangles_from, Triangle::new),
-            cylinders: Kind::new(&scene.cylinders, cylinders_from, Cylinder::new),
+            spheres: ShapeList::new(&scene.spheres, spheres_from, Sphere::new),
+            triangles: ShapeList::new(&scene.triangles, triangles_from, Triangle::new),
+            cylinders: ShapeList::new(&scene.cylinders, cylinders_from, Cylinder::new),
             triangles_and_others: [
                 Leaf { triangles: 0..scene.triangles.len() as u32, ..Leaf::default() },
                 Leaf {
@@ -428,9 +428,7 @@ impl<S: Scalar> Primitives<S> {
         } else if let Some(triangle) = self.triangles.get(number) {
             triangle.surface(near)
         } else {
-            let cylinders = &self.cylinders;
-            cylinders.shapes[cylinders.places[(number - cylinders.first) as usize] as usize]
-                .surface(near)
+            self.cylinders.of_kind(number).surface(near)
         }
     }
 }
