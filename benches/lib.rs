@@ -6,7 +6,7 @@ mod probes;
 pub use probes::{Kind, Probe, Rays};
 
 use rayweave_contract::Work;
-use rayweave_core::precision::Demand;
+use rayweave_core::precision::PrecisionEstimate;
 use rayweave_core::{Execution, Scene, tracer};
 use rayweave_scene_file as scene_file;
 use std::path::Path;
@@ -46,7 +46,7 @@ pub fn scene(file: &str) -> Scene {
 
 fn load(name: &'static str, file: &str, (width, height): (u32, u32)) -> Load {
     let scene = scene(file);
-    let scene = scene.with_arithmetic(Demand::of(&scene).precision());
+    let scene = scene.with_arithmetic(PrecisionEstimate::of(&scene).precision());
     let work =
         tracer(&scene, width, height, Execution::default()).unwrap_or_else(|e| panic!("{e}"));
     Load { name, width, height, work }

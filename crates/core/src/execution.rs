@@ -1,6 +1,6 @@
 //! The settings of a rendering that never change the image: packets, sharing, acceleration.
 
-use crate::precision::{Demand, F32_MIRRORS};
+use crate::precision::{F32_MIRRORS, PrecisionEstimate};
 use crate::settings::Precision;
 
 /// The settings that never change a bit of the image, only the time that it takes.
@@ -81,7 +81,7 @@ impl Lanes {
     /// Where that is too much for `f32`, the rays of a packet soon have nothing in common, so each
     /// ray is followed alone.
     #[must_use]
-    pub fn suggested(estimate: &Demand) -> Self {
+    pub fn suggested(estimate: &PrecisionEstimate) -> Self {
         if estimate.mirrors <= F32_MIRRORS { Self::default() } else { Self::One }
     }
 }

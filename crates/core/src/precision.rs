@@ -24,7 +24,7 @@ use std::fmt;
 /// an error grows about eightfold from one to the next, and what it is an error of counts less by
 /// the share that is mirrored. After all bounces that takes `bounces * log2(8 reflection)` digits.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Demand {
+pub struct PrecisionEstimate {
     /// How far `f32` displaces what is seen, at most, in widths of the picture.
     pub displacement: f64,
     /// The binary digits that are lost between curved mirrors, 0 or more.
@@ -59,7 +59,7 @@ struct Extent {
     distance: f64,
 }
 
-impl Demand {
+impl PrecisionEstimate {
     /// Looks at every coordinate of `scene` once.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
@@ -171,7 +171,7 @@ fn distance_to_segment(point: DVec3, (from, to): (DVec3, DVec3)) -> f64 {
     point.distance(from.lerp(to, share.clamp(0.0, 1.0)))
 }
 
-impl fmt::Display for Demand {
+impl fmt::Display for PrecisionEstimate {
     /// Why this precision, as the end of a sentence.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { displacement, mirrors, least, extreme } = self;

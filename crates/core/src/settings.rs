@@ -73,7 +73,7 @@ pub enum Precision {
 /// The formulas and the number type of a rendering.
 ///
 /// The default is the robust formulas in `f64`, which are right for every scene. Where `f32` is
-/// enough, [`PrecisionEstimate`](crate::precision::Demand) says so.
+/// enough, [`PrecisionEstimate`](crate::precision::PrecisionEstimate) says so.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Arithmetic {
     /// The formulas.

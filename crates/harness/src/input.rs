@@ -2,7 +2,7 @@
 
 use crate::options::{PrecisionOption, SceneOptions, SwitchOption};
 use rayweave_contract::{Image, ImageError, Work};
-use rayweave_core::precision::Demand;
+use rayweave_core::precision::PrecisionEstimate;
 use rayweave_core::scene::RenderSettings;
 use rayweave_core::{Arithmetic, Execution, Lanes, Precision, Sampling, Scene, tracer};
 use rayweave_scene_file::{self as scene_file, SceneFile};
@@ -72,14 +72,14 @@ impl Input {
             );
         }
         scene.render.adaptive = adaptive && scene.render.has_lattice();
-        let demand = Demand::of(&scene);
+        let estimate = PrecisionEstimate::of(&scene);
         let (precision, reason) = match options.precision {
-            PrecisionOption::Auto => (demand.precision(), demand.to_string()),
+            PrecisionOption::Auto => (estimate.precision(), estimate.to_string()),
             PrecisionOption::F32 => (Precision::F32, "as asked for".to_owned()),
             PrecisionOption::F64 => (Precision::F64, "as asked for".to_owned()),
         };
         scene.render.arithmetic = Arithmetic { formulas: options.formulas.into(), precision };
-        let lanes = options.lanes.or(Lanes::suggested(&demand));
+        let lanes = options.lanes.or(Lanes::suggested(&estimate));
         let execution = Execution { lanes, share_samples, acceleration: options.accel.into() };
         let skipped_triangles = file.skipped_triangles;
         Ok(Self { name, scene, width, height, execution, reason, skipped_triangles })

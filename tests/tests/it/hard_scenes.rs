@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 use rayweave_contract::Image;
-use rayweave_core::precision::Demand;
+use rayweave_core::precision::PrecisionEstimate;
 use rayweave_core::{Precision, Scene};
 use rayweave_tests::transform::{enlarged, moved};
 use rayweave_tests::{metrics, model, picture, scenes};
@@ -55,7 +55,7 @@ impl Drawn {
         let mut scene = scene.clone();
         scene.render.antialiasing = antialiasing;
         let height = width * 3 / 4;
-        let precision = Demand::of(&scene).precision();
+        let precision = PrecisionEstimate::of(&scene).precision();
         let chosen = picture::of_scene(&scene, width, height, precision);
         let wide = match precision {
             Precision::F32 => picture::of_scene(&scene, width, height, Precision::F64),
@@ -107,7 +107,7 @@ impl Drawn {
 fn assert_closed(what: &str, scene: &Scene) {
     let mut scene = scene.clone();
     scene.render.antialiasing = 0;
-    for precision in [Demand::of(&scene).precision(), Precision::F64] {
+    for precision in [PrecisionEstimate::of(&scene).precision(), Precision::F64] {
         // An odd number of pixels: some lie on the axes.
         let image = picture::of_scene(&scene, 125, 93, precision);
         let leaks = image.pixels().iter().filter(|color| color[1] != 0.0).count();

@@ -1,14 +1,14 @@
 //! Which precision a scene is given, and that it is enough.
 
 use glam::DVec3;
-use rayweave_core::precision::{Demand, F32_DISPLACEMENT, F32_MIRRORS};
+use rayweave_core::precision::{F32_DISPLACEMENT, F32_MIRRORS, PrecisionEstimate};
 use rayweave_core::scene::{Cylinder, Material, Plane, Sphere, Triangle};
 use rayweave_core::{Lanes, Precision, Scene};
 use rayweave_tests::transform::{enlarged, moved};
 use rayweave_tests::{metrics, model, picture, scenes};
 
 fn chosen(scene: &Scene) -> Precision {
-    Demand::of(scene).precision()
+    PrecisionEstimate::of(scene).precision()
 }
 
 /// Nothing at all, seen from the origin.
@@ -126,7 +126,7 @@ fn every_kind_makes_its_demand() {
     ];
     for (what, scene, roundings, distance, least, extreme) in cases {
         for focal_length in [1.0, 64.0] {
-            let found = Demand::of(&through_a_lens(focal_length, scene.clone()));
+            let found = PrecisionEstimate::of(&through_a_lens(focal_length, scene.clone()));
             let displacement = focal_length * roundings / distance / 2f64.powi(24);
             assert!(
                 (found.displacement / displacement - 1.0).abs() < 1e-12,
@@ -140,14 +140,19 @@ fn every_kind_makes_its_demand() {
 /// Catches a bound that is off, or on the wrong side.
 #[test]
 fn the_displacement_and_the_mirrors_decide() {
-    let demand = |displacement, mirrors| Demand { displacement, mirrors, least: 1.0, extreme: 1.0 };
+    let estimate = |displacement, mirrors| PrecisionEstimate {
+        displacement,
+        mirrors,
+        least: 1.0,
+        extreme: 1.0,
+    };
     let more = 1.0 + 1e-15;
-    assert_eq!(demand(F32_DISPLACEMENT, F32_MIRRORS).precision(), Precision::F32);
-    assert_eq!(demand(F32_DISPLACEMENT * more, 0.0).precision(), Precision::F64);
-    assert_eq!(demand(0.0, F32_MIRRORS * more).precision(), Precision::F64);
+    assert_eq!(estimate(F32_DISPLACEMENT, F32_MIRRORS).precision(), Precision::F32);
+    assert_eq!(estimate(F32_DISPLACEMENT * more, 0.0).precision(), Precision::F64);
+    assert_eq!(estimate(0.0, F32_MIRRORS * more).precision(), Precision::F64);
     // Packets, whatever else asks for `f64`; not between mirrors that scatter.
-    assert_eq!(Lanes::suggested(&demand(F32_DISPLACEMENT * more, F32_MIRRORS)), Lanes::default());
-    assert_eq!(Lanes::suggested(&demand(0.0, F32_MIRRORS * more)), Lanes::One);
+    assert_eq!(Lanes::suggested(&estimate(F32_DISPLACEMENT * more, F32_MIRRORS)), Lanes::default());
+    assert_eq!(Lanes::suggested(&estimate(0.0, F32_MIRRORS * more)), Lanes::One);
     // Planes without anything beside them have no outline: no coordinate is too large for them.
     let floor = Plane { point: -1e8 * DVec3::Y, normal: DVec3::Y, material: 0 };
     assert_eq!(chosen(&Scene { planes: vec![floor], ..empty() }), Precision::F32);
@@ -166,7 +171,7 @@ fn curved_mirrors_take_digits() {
         scene.triangles.iter_mut().for_each(|triangle| triangle.material = 2);
         scene.cylinders.iter_mut().for_each(|cylinder| cylinder.material = 3);
         scene.render.max_reflections = 5;
-        Demand::of(&scene).mirrors
+        PrecisionEstimate::of(&scene).mirrors
     };
     assert_eq!(mirrors([1.0, 0.0, 1.0, 0.0]), 0.0);
     assert_eq!(mirrors([0.0, 0.125, 0.0, 0.0625]), 0.0);
@@ -255,7 +260,7 @@ fn the_reason_is_one_line_about_what_decides() {
         (&scenes::named("imbalance"), "mirrors"),
         (&enlarged(&report, 1e30), "numbers from"),
     ] {
-        let reason = Demand::of(scene).to_string();
+        let reason = PrecisionEstimate::of(scene).to_string();
         assert!(reason.contains(word) && !reason.contains('\n') && reason.len() < 80, "{reason}");
     }
 }
