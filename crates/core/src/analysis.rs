@@ -1,4 +1,4 @@
-//! What a scene needs: found out once, before it is rendered.
+//! An analysis of a scene: which parts of the tracer it uses, found before it is rendered.
 
 use crate::execution::{Acceleration, Execution};
 use crate::formulas::{Compiled, Family, select};
@@ -7,58 +7,60 @@ use crate::simd::lane::Scalar;
 use crate::trace::World;
 use std::fmt;
 
-/// What of the tracer a picture of a scene uses; what it does not use costs it nothing.
+/// The parts of the tracer that an image of a scene uses. The other parts cost it nothing.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Analysis {
-    /// Planes, spheres, triangles and cylinders. Rays do not look for a kind that is not there.
+    /// The numbers of planes, spheres, triangles and cylinders. Rays skip a kind of which there is
+    /// none.
     pub primitives: [usize; 4],
-    /// How many of them no ray reaches: left out.
+    /// The number of primitives that no ray reaches, and which are left out.
     pub behind: usize,
-    /// The most bounces of a ray: 0 if nothing mirrors.
+    /// The largest number of bounces of a ray: 0 if nothing reflects.
     pub bounces: u32,
-    /// Lights, and how many of them can light anything that is seen: not those without power, nor
-    /// those behind a plane.
+    /// The number of lights, and of those that can light anything visible. Lights without power and
+    /// lights behind a plane cannot.
     pub lights: (usize, usize),
-    /// For each light that can, the planes that may hide it.
+    /// The number of planes that may hide each light that can.
     pub hiding_planes: Vec<usize>,
-    /// How a ray finds what it hits among the primitives that are not planes.
+    /// The way in which a ray finds what it hits among the primitives that are not planes.
     pub search: HitSearch,
 }
 
-/// How a ray finds what it hits.
+/// The way in which a ray finds what it hits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HitSearch {
-    /// It tries each.
+    /// The ray tries each primitive.
     BruteForce,
-    /// It tries those in whose direction it goes, if it starts at the eye or ends at a light; else
-    /// each, triangles if it comes near any.
+    /// The ray tries the primitives whose direction cone holds it, if it starts at the eye or ends
+    /// at a light. Other rays try each primitive, but triangles only if they come near one.
     Cones,
-    /// It follows a tree of boxes of this many leaves.
+    /// The ray traverses a BVH.
     Bvh {
-        /// Of a few primitives each.
+        /// The number of its leaves, of a few primitives each.
         leaves: usize,
     },
 }
 
 impl Analysis {
-    /// Of `scene`, rendered by `execution`.
+    /// Analyses `scene` as it is rendered with `execution`.
     ///
     /// # Errors
     ///
     /// A scene that [`Scene::check`] rejects.
     pub fn of(scene: &Scene, execution: &Execution) -> Result<Self, SceneError> {
         scene.check()?;
-        Ok(select(scene.render.arithmetic, Looked { scene, acceleration: execution.acceleration }))
+        let arguments = AnalysisArguments { scene, acceleration: execution.acceleration };
+        Ok(select(scene.render.arithmetic, arguments))
     }
 }
 
-/// What an analysis is compiled for.
-struct Looked<'a> {
+/// The arguments of an analysis, for which it is compiled in several arithmetics.
+struct AnalysisArguments<'a> {
     scene: &'a Scene,
     acceleration: Acceleration,
 }
 
-impl Compiled for Looked<'_> {
+impl Compiled for AnalysisArguments<'_> {
     type Output = Analysis;
 
     fn compiled<S: Scalar, F: Family>(self) -> Analysis {
@@ -88,7 +90,8 @@ impl fmt::Display for Analysis {
         let [planes, spheres, triangles, cylinders] = self.primitives;
         writeln!(
             f,
-            "primitives: {planes} planes, {spheres} spheres, {triangles} triangles, {cylinders} cylinders"
+            "primitives: {planes} planes, {spheres} spheres, {triangles} triangles, \
+             {cylinders} cylinders"
         )?;
         if self.behind > 0 {
             writeln!(f, "left out: {} of them, behind all that rays reach", self.behind)?;
@@ -97,7 +100,8 @@ impl fmt::Display for Analysis {
             HitSearch::BruteForce => writeln!(f, "search: every ray tries every primitive")?,
             HitSearch::Cones => writeln!(
                 f,
-                "search: rays from the eye, also by a plane's mirror, and to a light try what is in their direction; others each primitive, triangles if they come near any"
+                "search: rays from the eye, also by a plane's mirror, and to a light try what is \
+                 in their direction; others each primitive, triangles if they come near any"
             )?,
             HitSearch::Bvh { leaves } => {
                 writeln!(f, "search: a tree of boxes with {leaves} leaves")?;
@@ -156,22 +160,21 @@ mod tests {
         Analysis::of(&scene(spheres, reflection), &execution).expect("a sound scene")
     }
 
-    /// Catches a light, a plane, a mirror or a tree that is used though nothing needs it, or the
-    /// other way around.
+    /// Catches a light, a plane, a mirror or a BVH that is used though nothing needs it, or that is
+    /// missing.
     #[test]
     fn what_is_not_needed_is_left_out() {
         let few = analysis(3, 0.0, Acceleration::Auto);
         assert_eq!((few.primitives, few.bounces, few.lights), ([1, 3, 0, 0], 0, (3, 1)));
         assert_eq!((few.hiding_planes.as_slice(), few.search), (&[0][..], HitSearch::Cones));
         assert_eq!(analysis(3, 0.5, Acceleration::Auto).bounces, 4);
-        assert!(
-            matches!(analysis(100, 0.0, Acceleration::Auto).search, HitSearch::Bvh { leaves } if leaves > 10)
-        );
+        let many = analysis(100, 0.0, Acceleration::Auto).search;
+        assert!(matches!(many, HitSearch::Bvh { leaves } if leaves > 10), "{many:?}");
         assert_eq!(analysis(100, 0.0, Acceleration::None).search, HitSearch::BruteForce);
     }
 
-    /// Catches what is left out though a mirror, or the way to a light behind the eye, shows it;
-    /// and what is not.
+    /// Catches a primitive that is left out though a mirror or the way to a light behind the eye
+    /// shows it; and one that is kept though nothing does.
     #[test]
     fn what_is_behind_is_left_out() {
         let behind = |reflection, light_z, acceleration| {

@@ -1,34 +1,35 @@
-//! From a position in the image to a ray.
+//! The camera: turns a position in the image into a ray.
 
 use crate::ray::Ray;
 use crate::scene::{self, unit};
 use crate::simd::lane::{Lane, Scalar};
 use crate::simd::vector::Vector;
 
-/// The camera of a picture of a certain size and lattice density.
+/// The camera of an image of a certain size and lattice density.
 ///
-/// Positions are counted in half steps of the sampling lattice from the middle of the picture: whole
-/// numbers, small enough to be exact in `f32`. So one lattice point is one pair of numbers,
-/// whichever pixel asks for it, and gives one ray, to the bit.
+/// Positions are counted in half lattice steps from the middle of the image. They are whole
+/// numbers, small enough to be exact in `f32`, so a lattice point is the same pair of numbers for
+/// every pixel that needs it, and gives the same ray.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Camera<S> {
     position: Vector<S>,
-    /// The unit direction of the middle of the screen.
+    /// The unit direction to the middle of the screen.
     forward: Vector<S>,
-    /// Half a lattice step to the right, on a screen at distance 1.
+    /// The vector of half a lattice step to the right, on a screen at distance 1.
     x_step: Vector<S>,
-    /// Half a lattice step downwards, on a screen at distance 1.
+    /// The vector of half a lattice step down, on a screen at distance 1.
     y_step: Vector<S>,
 }
 
 impl<S: Scalar> Camera<S> {
-    /// For pictures `width` pixels wide with `density` lattice steps a pixel.
+    /// Makes the camera of images `width` pixels wide with `density` lattice steps a pixel.
     pub(crate) fn new(camera: &scene::Camera, width: u32, density: u32) -> Self {
         let view = unit(camera.look_at - camera.position);
         let right = unit(view.cross(unit(camera.up)));
         let up = right.cross(view);
-        // Pixels are square: the step is the same in both directions. Only the ratio of the screen
-        // to its distance matters, so no number is as large or small as these may be.
+        // Pixels are square, so the step has the same length in both directions. Only the ratio of
+        // the screen's width to its distance matters; taking it first avoids very large and very
+        // small numbers.
         let screen_width = camera.screen_width / camera.focal_length;
         let half_step = screen_width / (2.0 * f64::from(density) * f64::from(width));
         Self {
@@ -39,7 +40,7 @@ impl<S: Scalar> Camera<S> {
         }
     }
 
-    /// The ray through the point `x`, `y` half lattice steps from the middle of the screen.
+    /// Returns the ray through the position `x`, `y`, with unit direction.
     #[inline(always)]
     pub(crate) fn ray<L: Lane<Scalar = S>>(&self, x: L, y: L) -> Ray<L> {
         let across = Vector::splat(self.x_step) * x + Vector::splat(self.y_step) * y;

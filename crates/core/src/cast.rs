@@ -1,4 +1,4 @@
-//! Single rays through the kernel that renders, for tests and for whoever studies it.
+//! Single rays through the kernel that renders, for tests and studies.
 
 use crate::execution::Acceleration;
 use crate::formulas::{Compiled, Family, select};
@@ -9,16 +9,17 @@ use crate::simd::vector::Vector;
 use crate::trace::World;
 use glam::DVec3;
 
-/// Where a ray hits.
+/// The closest hit of a single ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// In units of the ray's direction, above 0.
+    /// The distance in units of the ray's direction, above 0.
     pub t: f64,
-    /// The primitive's number: planes, spheres, triangles, cylinders, each in file order, from 0.
+    /// The number of the primitive, counted from 0 through planes, spheres, triangles and
+    /// cylinders, each in file order.
     pub primitive: usize,
-    /// The point, moved onto the surface.
+    /// The point of the hit, moved onto the surface.
     pub point: DVec3,
-    /// The unit normal, turned against the ray.
+    /// The unit normal, pointing against the ray.
     pub normal: DVec3,
 }
 
@@ -36,15 +37,16 @@ impl Caster {
         Ok(Self::of(scene))
     }
 
-    /// Not generic, so that all that is compiled for it is compiled in this crate, and in none that
-    /// uses it.
+    /// Prepares the scene. It is not generic, so that the kernels are compiled in this crate and
+    /// not again in each crate that uses it.
     fn of(scene: &Scene) -> Self {
         Self(select(scene.render.arithmetic, scene))
     }
 
-    /// Returns the closest hit of the ray from `origin` in `direction`, which may have any length but 0.
-    /// Both are first rounded to the precision. A zero direction hits nothing, nor does what is not
-    /// finite.
+    /// Returns the closest hit of the ray from `origin` in `direction`, which may have any length.
+    ///
+    /// Both are first rounded to the precision. A zero direction hits nothing, and neither does a
+    /// ray with a number that is not finite.
     #[must_use]
     pub fn closest_hit(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
         if !(origin.is_finite() && direction.is_finite()) {
@@ -53,8 +55,8 @@ impl Caster {
         self.0.closest_hit(origin, direction)
     }
 
-    /// The colour, linear and not clamped, that comes back along the ray from `origin` in
-    /// `direction`, which is made unit.
+    /// Returns the colour, linear and not clamped, that the ray from `origin` in `direction` brings
+    /// back. The direction is made unit.
     #[must_use]
     pub fn color(&self, origin: DVec3, direction: DVec3) -> [f64; 3] {
         self.0.color(origin, direction)
@@ -69,6 +71,7 @@ impl Compiled for &Scene {
     }
 }
 
+/// A scene ready for single rays, in any arithmetic.
 pub(crate) trait Cast {
     fn closest_hit(&self, origin: DVec3, direction: DVec3) -> Option<Hit>;
     fn color(&self, origin: DVec3, direction: DVec3) -> [f64; 3];
@@ -76,9 +79,9 @@ pub(crate) trait Cast {
 
 impl<S: Scalar, F: Family> Cast for World<S, F> {
     fn closest_hit(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
-        // The longest component is brought near 1 by a power of two, which rounds nothing: the
+        // Scales the longest component to about 1, by a power of two, which rounds nothing: the
         // squares of a very long or short direction would over- or underflow. The renderer's own
-        // are unit, or reach from a point to a light.
+        // directions are unit, or reach from a point to a light.
         let (_, exponent) = libm::frexp(direction.abs().max_element());
         let ray = Ray::<S> {
             origin: Vector::rounded(origin),

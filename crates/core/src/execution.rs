@@ -16,7 +16,7 @@ pub struct Execution {
     /// Traces a lattice point once for all pixels of a tile that need it. Adaptive samples are
     /// always shared.
     pub share_samples: bool,
-    /// The primitives that a ray tries.
+    /// The way in which a ray finds the primitives that it tries.
     pub acceleration: Acceleration,
 }
 
@@ -40,9 +40,9 @@ pub enum Acceleration {
 pub enum Lanes {
     /// One ray.
     One,
-    /// As many as fill 256 bits: 8 in `f32`, 4 in `f64`.
+    /// A packet that fills 256 bits: 8 in `f32`, 4 in `f64`.
     Wide256,
-    /// As many as fill 512 bits: 16 in `f32`, 8 in `f64`.
+    /// A packet that fills 512 bits: 16 in `f32`, 8 in `f64`.
     Wide512,
 }
 
@@ -52,7 +52,7 @@ impl Default for Execution {
     }
 }
 
-/// As many lanes as fill a register of the machine that the program is built for, but at least 256
+/// The default fills a register of the machine that the program is built for, but at least 256
 /// bits.
 impl Default for Lanes {
     fn default() -> Self {

@@ -1,8 +1,10 @@
-//! The tracer: a [`Scene`] as [`Work`](rayweave_contract::Work).
+//! The ray tracer: renders a [`Scene`] as [`Work`](rayweave_contract::Work).
 //!
-//! * [`Scene`] says what is drawn, in `f64`; [`tracer()`] turns it into work.
-//! * Inside, a formula is written once over a number type (`simd`); `accel` finds what a ray
-//!   hits, `trace` the colour that the ray brings back, and `render` filters samples into pixels.
+//! * A [`Scene`] is plain data in `f64`; [`tracer()`] turns it into work.
+//! * [`RenderSettings`](scene::RenderSettings), in the scene, change the image; an [`Execution`]
+//!   never does.
+//! * Every formula is written once over a number type (`simd`). `accel` finds what a ray hits,
+//!   `trace` finds the colour that the ray brings back, and `render` filters samples into pixels.
 //!
 //! This crate starts no thread, opens no file and reads no clock.
 

@@ -1,11 +1,13 @@
-//! Surfaces and lights in the precision of the picture, and Phong's model of how one answers the
-//! other (Bui Tuong Phong, Illumination for Computer Generated Pictures, 1975).
+//! Materials and lights in the precision of the image, and the powers of Phong's highlight.
+//!
+//! The model is that of Bui Tuong Phong (Illumination for Computer Generated Pictures, 1975).
 
 use crate::accel::occluders::Occluders;
 use crate::scene;
 use crate::simd::lane::{Lane, Scalar};
 use crate::simd::vector::Vector;
 
+/// A material in the precision of the image; see [`scene::Material`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Material<S> {
     pub(crate) color: Vector<S>,
@@ -16,14 +18,16 @@ pub(crate) struct Material<S> {
     pub(crate) reflection: S,
 }
 
+/// A point light in the precision of the image.
 #[derive(Clone, Debug)]
 pub(crate) struct Light<S> {
     pub(crate) position: Vector<S>,
-    /// The sum of the magnitudes of its coordinates: rounding errors near it are in proportion.
+    /// The sum of the magnitudes of the position's coordinates: rounding errors near the light are
+    /// proportional to it.
     pub(crate) reach: S,
-    /// Colour times power.
+    /// The colour times the power.
     pub(crate) intensity: Vector<S>,
-    /// The primitives that may hide it.
+    /// The primitives that may hide the light.
     pub(crate) occluders: Occluders<S>,
 }
 
@@ -52,7 +56,7 @@ impl<S: Scalar> Light<S> {
     }
 }
 
-/// The material under each lane.
+/// The material of the surface under each lane.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Finish<L: Lane> {
     pub(crate) color: Vector<L>,
@@ -89,14 +93,16 @@ impl<L: Lane> Finish<L> {
     }
 }
 
-/// `base ^ exponent` in the lanes of `wanted`, each exponent 1 or more: squarings and
-/// multiplications in an order that only the exponent decides.
+/// Returns `base ^ exponent` in the lanes of `wanted`, for exponents of 1 or more.
+///
+/// The order of squarings and multiplications depends on the exponent alone, so that every lane
+/// gets the bits that it would get alone.
 #[inline(always)]
 pub(crate) fn power<L: Lane>(base: L, exponents: L::Index, wanted: L::Mask) -> L {
     let mut result = base;
     let mut todo = wanted;
-    // A packet sees few materials: each distinct exponent is served once, in all lanes that have
-    // it.
+    // A packet sees few materials, so each distinct exponent is computed once for all lanes that
+    // have it.
     while let Some(exponent) = L::first_index(todo, exponents) {
         let here = L::index_equals(exponents, exponent);
         result = L::select(here, power_of_all(base, exponent), result);

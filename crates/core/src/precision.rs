@@ -1,66 +1,68 @@
-//! How many digits a scene needs.
+//! An estimate of the error that `f32` causes in a scene, and the precision that follows from it.
 
 use crate::scene::{Cylinder, Plane, Scene, Sphere, Triangle, near_one, unit};
 use crate::settings::Precision;
 use glam::DVec3;
 use std::fmt;
 
-/// What a scene asks of a number type.
+/// An estimate of how far `f32` errs in a scene, from the scene's numbers.
 ///
 /// **Displacement.** Rays leave a surface by about 24 roundings of the coordinates across it:
-/// twelve of the point's and twelve of the shape's. Along it an outline is displaced by one
-/// rounding of its coordinates, and a ray by four of its length, which cover the eye. From a
-/// distance the picture is `distance * screen_width / focal_length` wide; of this width, that is
+/// twelve of the point's and twelve of the shape's. Along the surface, an outline is displaced by
+/// one rounding of its coordinates, and a ray by four roundings of its length, which also cover the
+/// eye. At a distance the image is `distance * screen_width / focal_length` wide. As a share of
+/// this width, the displacement is
 ///
 /// ```text
 /// 2^-24 (24 across + along + 4 distance) / (distance * screen_width / focal_length)
 /// ```
 ///
-/// The scene's displacement is that of the worst primitive, each at its point next to the eye. So
-/// coordinates may be of any size, but not beside small distances: far from the origin of
-/// coordinates, close above a huge sphere. A long lens magnifies what there is.
+/// The displacement of the scene is that of the worst primitive, each taken at its point closest to
+/// the eye. So coordinates may be of any size unless distances are small beside them, as far from
+/// the origin of coordinates or close above a huge sphere. A long lens magnifies the error.
 ///
-/// **Mirrors.** A curved mirror of radius `r` spreads what comes from a distance `d` by `2 d / r`:
-/// an error grows about eightfold from one to the next, and what it is an error of counts less by
-/// the share that is mirrored. After all bounces that takes `bounces * log2(8 reflection)` digits.
+/// **Mirrors.** A curved mirror of radius `r` spreads what comes from a distance `d` by `2 d / r`.
+/// An error grows about eightfold from one mirror to the next, and its effect shrinks by the share
+/// that is mirrored. After all bounces, `bounces * log2(8 reflection)` digits are lost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrecisionEstimate {
-    /// How far `f32` displaces what is seen, at most, in widths of the picture.
+    /// The largest displacement that `f32` causes, in widths of the image.
     pub displacement: f64,
     /// The binary digits that are lost between curved mirrors, 0 or more.
     pub mirrors: f64,
-    /// The smallest number that is squared: a radius, the longest edge of a triangle or, if it is
-    /// smaller, the largest coordinate. Infinite if there is nothing.
+    /// The smallest number that is squared: a radius, the longest edge of a triangle or, if that is
+    /// smaller, the largest coordinate. Infinite in an empty scene.
     pub least: f64,
-    /// The largest magnitude of any number that is multiplied by others, at least 1: a coordinate,
-    /// of a light too, or a factor of a colour.
+    /// The largest magnitude of a number that is multiplied by others, at least 1: a coordinate of
+    /// a primitive or a light, or a factor of a colour.
     pub extreme: f64,
 }
 
-/// The displacement up to which `f32` is enough: the eighth of a pixel of a picture 500 wide. Up to
-/// here, pictures in `f32` were 60 dB and more from those in `f64`, and mostly 70.
+/// The displacement up to which `f32` is enough: an eighth of a pixel of an image 500 pixels wide.
+/// Up to here, images in `f32` had a PSNR of at least 60 dB against `f64`, and mostly 70 dB.
 pub const F32_DISPLACEMENT: f64 = 1.0 / 4096.0;
 
-/// The digits that `f32` may lose between mirrors: of its 24, a picture shows 8.
+/// The digits that `f32` may lose between mirrors: an image shows 8 of its 24.
 pub const F32_MIRRORS: f64 = 16.0;
 
-/// Magnitudes whose squares, and the squares' products, `f32` can hold.
+/// The magnitudes whose squares, and products of squares, `f32` can hold.
 const F32_RANGE: std::ops::Range<f64> = 1e-9..1e9;
 
-/// What a primitive has to do with precision.
+/// The lengths of a primitive that decide how far `f32` errs.
 struct Extent {
-    /// A radius or the longest edge; infinite for a plane.
+    /// The radius or the longest edge; infinite for a plane.
     size: f64,
     /// The largest magnitude of a coordinate.
     reach: f64,
-    /// The same across the surface: of what is subtracted to find the height of the eye above it.
+    /// The largest magnitude of a coordinate across the surface: of the terms whose difference is
+    /// the eye's height above it.
     across: f64,
-    /// From the eye to the point next to it.
+    /// The distance from the eye to the closest point of the primitive.
     distance: f64,
 }
 
 impl PrecisionEstimate {
-    /// Looks at every coordinate of `scene` once.
+    /// Estimates the error of `scene`. Looks at every coordinate once.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
         let eye = scene.camera.position;
@@ -74,9 +76,10 @@ impl PrecisionEstimate {
         for Extent { size, reach, across, distance } in extents {
             largest = largest.max(reach);
             smallest = smallest.min(size);
-            // A plane has no outline: it looks the same moved along itself.
+            // A plane has no outline: moved along itself, it looks the same.
             let along = if size.is_finite() { reach } else { 0.0 };
-            // NaN, for a plane through the eye and the origin, is not seen by `max`, nor the plane.
+            // NaN comes from a plane through the eye and the origin. `max` ignores it, and the
+            // plane is not visible.
             roundings = roundings.max((24.0 * across + along + 4.0 * distance) / (distance * view));
         }
         let curved = scene.spheres.iter().map(|s| s.material);
@@ -99,7 +102,7 @@ impl PrecisionEstimate {
         self.extreme <= F32_RANGE.end && self.least >= F32_RANGE.start
     }
 
-    /// The cheapest number type whose error a picture in 8 bits does not show.
+    /// Returns the cheapest number type whose error an image in 8 bits does not show.
     #[must_use]
     pub fn precision(&self) -> Precision {
         let enough = self.displacement <= F32_DISPLACEMENT && self.mirrors <= F32_MIRRORS;
@@ -172,7 +175,7 @@ fn distance_to_segment(point: DVec3, (from, to): (DVec3, DVec3)) -> f64 {
 }
 
 impl fmt::Display for PrecisionEstimate {
-    /// Why this precision, as the end of a sentence.
+    /// Writes the reason for this precision, as the end of a sentence.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { displacement, mirrors, least, extreme } = self;
         let (allowed, range) = (F32_DISPLACEMENT, F32_RANGE);
@@ -187,7 +190,8 @@ impl fmt::Display for PrecisionEstimate {
         } else {
             write!(
                 f,
-                "f32 is off by up to {displacement:.1e} of the picture's width (allowed: {allowed:.1e})"
+                "f32 is off by up to {displacement:.1e} of the picture's width \
+                 (allowed: {allowed:.1e})"
             )
         }
     }

@@ -1,9 +1,9 @@
-//! Places for tests.
+//! Random points for tests.
 
 use glam::DVec3;
 
-/// Any places in the unit cube, the same in every run: a linear congruential generator (Knuth, The
-/// Art of Computer Programming 2, 1981, 3.3.4).
+/// Returns points in the unit cube, the same in every run: a linear congruential generator (Knuth,
+/// The Art of Computer Programming 2, 1981, 3.3.4).
 pub(crate) fn random_points() -> impl FnMut() -> DVec3 {
     let mut state = 1_u64;
     let mut number = move || {

@@ -1,4 +1,4 @@
-//! A ray, and what every shape asks of it.
+//! Rays, and how the rays of a packet are grouped by their direction.
 
 use crate::simd::lane::{Lane, Mask, Scalar};
 use crate::simd::vector::Vector;
@@ -7,24 +7,26 @@ use crate::simd::vector::Vector;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ray<L> {
     pub(crate) origin: Vector<L>,
-    /// Of any length: `t` counts in it.
+    /// The direction, of any length; `t` is measured in it.
     pub(crate) direction: Vector<L>,
 }
 
 impl<L: Lane> Ray<L> {
+    /// Returns the point at `t`.
     #[inline(always)]
     pub(crate) fn at(&self, t: L) -> Vector<L> {
         self.origin + self.direction * t
     }
 }
 
-/// The `t` that stands for "no hit".
+/// Returns the `t` that stands for "no hit".
 #[inline(always)]
 pub(crate) fn miss<L: Lane>() -> L {
     L::literal(f64::INFINITY)
 }
 
-/// For x, y and z, the rays whose direction is longest along it; every ray belongs to exactly one.
+/// Returns, for each of x, y and z, the rays whose direction is longest along it. Every ray belongs
+/// to exactly one axis.
 #[inline(always)]
 fn longest_axis<L: Lane>(direction: [L; 3]) -> [L::Mask; 3] {
     let [x, y, z] = direction.map(L::abs);
@@ -33,17 +35,21 @@ fn longest_axis<L: Lane>(direction: [L; 3]) -> [L::Mask; 3] {
     [is_x, is_y, !is_x & !is_y]
 }
 
-/// The axes, x, y and z being 0, 1 and 2: cyclic, one along which directions are longest last.
+/// The axes in cyclic order, x, y and z being 0, 1 and 2. The last one is that along which the
+/// direction is longest.
 pub(crate) type AxisOrder = [usize; 3];
 
-/// Those for x, y and z.
+/// The orders that end with x, y and z.
 const ORDERS: [AxisOrder; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
 
-/// What similar rays have in common: along which axis they are longest, and which way they go.
+/// The class of a direction: its dominant axis and its octant.
+///
+/// All rays of one class pass the sides of a box in the same order, and project triangles along the
+/// same axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct DirectionClass {
     pub(crate) order: AxisOrder,
-    /// For x, y and z, whether the direction is below 0.
+    /// True for each of x, y and z along which the direction is below 0.
     pub(crate) backward: [bool; 3],
 }
 
@@ -61,7 +67,7 @@ impl DirectionClass {
 }
 
 impl<L: Lane> Ray<L> {
-    /// Shows `group` the rays of `wanted` by the axis along which they are longest.
+    /// Calls `group` for each dominant axis with the rays of `wanted` that have it.
     #[inline(always)]
     pub(crate) fn by_axis(&self, wanted: L::Mask, mut group: impl FnMut(AxisOrder, L::Mask)) {
         for (order, along) in ORDERS.into_iter().zip(longest_axis(self.direction.to_array())) {
@@ -72,8 +78,8 @@ impl<L: Lane> Ray<L> {
         }
     }
 
-    /// Shows `group` the rays of `wanted` by their class: those of a packet of neighbours mostly
-    /// have one.
+    /// Calls `group` for each direction class with the rays of `wanted` that have it. The rays of a
+    /// packet of neighbours mostly have one class.
     #[inline(always)]
     pub(crate) fn by_direction_class(
         &self,
@@ -100,8 +106,8 @@ impl<L: Lane> Ray<L> {
 mod tests {
     use super::*;
 
-    /// Every ray is in one group, whatever its components: that of the longest, if they are
-    /// numbers.
+    /// Catches a ray that is in no group or in two, whatever its components are, or in a group
+    /// other than that of its longest component.
     #[test]
     fn every_ray_has_one_axis() {
         let numbers = [

@@ -1,9 +1,9 @@
-//! What is in a picture: camera, lights, materials and primitives, as plain data.
+//! The scene: camera, lights, materials and primitives as plain data, and the rules that they obey.
 //!
 //! Every number is an `f64` in scene units and every colour is linear RGB in 0..=1; the tracer
-//! rounds them once to the precision it works in. The fields are public, and [`Scene::check`]
-//! says whether they mean something. The rules live here, and here only: a reader of scene files
-//! adds to a [`Fault`] where in the file it stands.
+//! rounds them once to the precision it works in. The fields are public, and [`Scene::check`] tells
+//! whether they are valid. The rules are written here and nowhere else: a reader of scene files
+//! adds to a [`Fault`] the position in the file.
 
 pub use crate::fault::{Fault, SceneError};
 pub use crate::settings::{MAX_ANTIALIASING, MAX_REFLECTIONS, RenderSettings, Sampling};
@@ -12,10 +12,10 @@ use crate::fault::{check_all, color, expect, finite, locate, not_negative, posit
 use crate::settings::Arithmetic;
 use glam::DVec3;
 
-/// A whole scene: everything that decides the picture, except its size in pixels.
+/// A whole scene: everything that decides the image, except its size in pixels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
-    /// Where the picture is seen from.
+    /// The camera.
     pub camera: Camera,
     /// The settings that change the image.
     pub render: RenderSettings,
@@ -33,51 +33,51 @@ pub struct Scene {
     pub cylinders: Vec<Cylinder>,
 }
 
-/// A pinhole camera: an eye, and a screen at `focal_length` before it.
+/// A pinhole camera: an eye, and a screen at `focal_length` in front of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// The eye.
+    /// The position of the eye.
     pub position: DVec3,
-    /// A point that appears in the middle of the picture; not the eye itself.
+    /// A point that appears in the middle of the image; not the eye itself.
     pub look_at: DVec3,
-    /// A direction that appears upwards; not parallel to the view, of any length above 0.
+    /// A direction that appears upwards, of any length above 0; not parallel to the view.
     pub up: DVec3,
-    /// Distance from the eye to the screen, above 0.
+    /// The distance from the eye to the screen, above 0.
     pub focal_length: f64,
-    /// Full width of the screen, above 0. Its height follows from the picture's proportions.
+    /// The full width of the screen, above 0. Its height follows from the image's proportions.
     pub screen_width: f64,
 }
 
 /// A point light without fall-off.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
-    /// Where it stands.
+    /// The position of the light.
     pub position: DVec3,
-    /// Its colour.
+    /// The colour of the light.
     pub color: DVec3,
-    /// The factor on its colour, 0 or more.
+    /// The factor on the colour, 0 or more.
     pub power: f64,
 }
 
-/// How a surface answers light (Phong, 1975), and how much of a mirror it is.
+/// The response of a surface to light (Phong, 1975), and the share of it that is a mirror.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
     /// The surface's own colour.
     pub color: DVec3,
-    /// Share of the colour that is there without any light, 0 or more.
+    /// The share of the colour that is there without any light, 0 or more.
     pub ambient: f64,
-    /// Share of the colour under a light straight above, 0 or more.
+    /// The share of the colour under a light straight above, 0 or more.
     pub diffuse: f64,
-    /// Strength of the highlight, 0 or more.
+    /// The strength of the highlight, 0 or more.
     pub specular: f64,
-    /// Exponent of the highlight, 1..=1024.
+    /// The exponent of the highlight, 1..=1024.
     pub shininess: u32,
-    /// Share of the mirrored colour, 0..=1.
+    /// The share of the mirrored colour, 0..=1.
     pub reflection: f64,
 }
 
 impl Material {
-    /// A material of this colour with the model's defaults for everything else.
+    /// Returns a material of this colour with the model's defaults for everything else.
     #[must_use]
     pub fn new(color: DVec3) -> Self {
         Self { color, ambient: 0.1, diffuse: 0.6, specular: 0.4, shininess: 2, reflection: 0.0 }
@@ -87,9 +87,9 @@ impl Material {
 /// An infinite plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane {
-    /// Any point of it.
+    /// Any point of the plane.
     pub point: DVec3,
-    /// Its normal, of any length above 0.
+    /// The normal, of any length above 0.
     pub normal: DVec3,
     /// Index into [`Scene::materials`].
     pub material: usize,
@@ -98,9 +98,9 @@ pub struct Plane {
 /// A sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere {
-    /// Its centre.
+    /// The centre.
     pub center: DVec3,
-    /// Its radius, above 0.
+    /// The radius, above 0.
     pub radius: f64,
     /// Index into [`Scene::materials`].
     pub material: usize,
@@ -109,20 +109,20 @@ pub struct Sphere {
 /// A triangle, edges included.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Triangle {
-    /// Its corners, not on one line.
+    /// The corners, not on one line.
     pub vertices: [DVec3; 3],
     /// Index into [`Scene::materials`].
     pub material: usize,
 }
 
-/// The wall of a cylinder whose axis is parallel to y: no caps.
+/// The wall of a cylinder whose axis is parallel to y, without caps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cylinder {
-    /// The lower end of its axis.
+    /// The lower end of the axis.
     pub bottom: DVec3,
-    /// The upper end of its axis: `bottom` but for a greater y.
+    /// The upper end of the axis: `bottom` with a greater y.
     pub top: DVec3,
-    /// Its radius, above 0.
+    /// The radius, above 0.
     pub radius: f64,
     /// Index into [`Scene::materials`].
     pub material: usize,
@@ -140,7 +140,7 @@ impl Scene {
         scene
     }
 
-    /// Whether every entry obeys the model, each on its own and in its reference to a material.
+    /// Checks that every entry obeys the model, each on its own and in its reference to a material.
     ///
     /// # Errors
     ///
@@ -163,7 +163,8 @@ impl Scene {
 }
 
 impl Camera {
-    /// Whether there is a view: finite numbers, a direction, an `up` beside it, a screen.
+    /// Checks that the camera has finite numbers, a direction, an `up` that is not parallel to it,
+    /// and a screen.
     ///
     /// # Errors
     ///
@@ -183,7 +184,7 @@ impl Camera {
 }
 
 impl Light {
-    /// Whether the light is finite, coloured in 0..=1 and of a power of 0 or more.
+    /// Checks that the light is finite, has a colour in 0..=1 and a power of 0 or more.
     ///
     /// # Errors
     ///
@@ -196,7 +197,7 @@ impl Light {
 }
 
 impl Material {
-    /// Whether every share and exponent is in its range.
+    /// Checks that every share and the exponent are in their ranges.
     ///
     /// # Errors
     ///
@@ -219,7 +220,7 @@ impl Material {
 }
 
 impl Plane {
-    /// Whether the plane has a place and a direction.
+    /// Checks that the plane is finite and has a normal.
     ///
     /// # Errors
     ///
@@ -232,7 +233,7 @@ impl Plane {
 }
 
 impl Sphere {
-    /// Whether the sphere has a place and a size.
+    /// Checks that the sphere is finite and has a radius.
     ///
     /// # Errors
     ///
@@ -244,14 +245,14 @@ impl Sphere {
 }
 
 impl Triangle {
-    /// A sphere around it, seldom the smallest: its centre and its radius.
+    /// Returns the centre and radius of a sphere around the triangle, seldom the smallest.
     pub(crate) fn around(&self) -> (DVec3, f64) {
         let [a, b, c] = self.vertices;
         let middle = (a.min(b).min(c) + a.max(b).max(c)) / 2.0;
         (middle, self.vertices.map(|v| v.distance(middle)).into_iter().fold(0.0, f64::max))
     }
 
-    /// Whether the triangle is finite and has an area.
+    /// Checks that the triangle is finite and has an area.
     ///
     /// # Errors
     ///
@@ -267,7 +268,7 @@ impl Triangle {
 }
 
 impl Cylinder {
-    /// Whether the cylinder stands upright and has a height and a radius.
+    /// Checks that the cylinder is finite and upright, and has a height and a radius.
     ///
     /// # Errors
     ///
@@ -282,22 +283,24 @@ impl Cylinder {
     }
 }
 
-/// `v` scaled so that its largest component is near 1, by a power of two: exactly.
+/// Returns `v` scaled by a power of two, which rounds nothing, so that its largest component is
+/// near 1.
 pub(crate) fn near_one(v: DVec3) -> DVec3 {
     let (_, exponent) = libm::frexp(v.abs().max_element());
     v.to_array().map(|component| libm::scalbn(component, -exponent)).into()
 }
 
-/// `v` at unit length, for any finite `v` but zero: scaled first, so that no square overflows.
+/// Returns `v` at unit length, for any finite `v` except zero. It is scaled first, so that no
+/// square overflows.
 pub(crate) fn unit(v: DVec3) -> DVec3 {
     (v / v.abs().max_element()).normalize()
 }
 
-/// Whether two vectors span no area, but for the rounding of their own components.
+/// Returns whether two vectors span no area, up to the rounding of their own components.
 pub(crate) fn parallel(a: DVec3, b: DVec3) -> bool {
     // Scaled to about 1 first, so that no product overflows or vanishes.
     let (a, b) = (a / a.abs().max_element(), b / b.abs().max_element());
     let rect = a.cross(b).length();
-    // NaN, from a zero vector, counts as parallel too.
+    // NaN, from a zero vector, counts as parallel.
     rect.is_nan() || rect <= 8.0 * f64::EPSILON * a.length() * b.length()
 }

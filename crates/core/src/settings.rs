@@ -20,7 +20,7 @@ pub struct RenderSettings {
     pub max_reflections: u32,
     /// Density `s` of the samples: 0 for one ray a pixel, else 1..=32; see [`Sampling`].
     pub antialiasing: u32,
-    /// Where the samples lie in and around a pixel.
+    /// The pattern of the samples in and around a pixel.
     pub sampling: Sampling,
     /// Traces lattice points between pixel centres only where those centres differ: in what they
     /// hit, in the lights it sees, or in the same of what it mirrors. Interpolates the others. Has
@@ -35,8 +35,8 @@ pub const MAX_REFLECTIONS: u32 = 64;
 /// The largest value of [`RenderSettings::antialiasing`].
 pub const MAX_ANTIALIASING: u32 = 32;
 
-/// Where the samples of a pixel lie. Both patterns are the same for every pixel, and tend to the
-/// integral of the filter over the image as their number grows.
+/// The pattern of the samples of a pixel. Both patterns are the same for every pixel, and tend to
+/// the integral of the filter over the image as their number grows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sampling {
     /// `(2 s + 1)^2` samples on a square lattice, weighted by the filter: the meaning of a scene

@@ -1,5 +1,7 @@
-//! The colour that a ray brings back: Whitted's recursion (An Improved Illumination Model for
-//! Shaded Display, 1980) as a loop, since a mirror sends on just one ray.
+//! The colour that a ray brings back: hit, shade, reflect, repeat.
+//!
+//! This is the recursion of Whitted (An Improved Illumination Model for Shaded Display, 1980),
+//! written as a loop, because a mirror sends on just one ray.
 
 use crate::accel::behind_culling::cull_behind;
 use crate::accel::cones::ConeSet;
@@ -18,42 +20,45 @@ use crate::simd::vector::Vector;
 use glam::DVec3;
 use std::marker::PhantomData;
 
-/// A scene in the precision and with the formulas of a picture, ready for rays.
+/// A scene in the precision and with the formulas of an image, ready for rays.
 #[derive(Debug)]
 pub(crate) struct World<S, F> {
     pub(crate) primitives: Primitives<S>,
     materials: Vec<Material<S>>,
     pub(crate) lights: Vec<Light<S>>,
-    /// What rays from the eye may meet; else anything.
+    /// The direction cones of the primitives, seen from the eye. Without them a ray from the eye
+    /// may hit any primitive.
     pub(crate) eye: Option<ConeSet<S>>,
-    /// What they may meet next after a plane that mirrors, by its number; else anything.
+    /// The same, seen from the eye's mirror image behind each plane that reflects, by the plane's
+    /// number: for the second segment of a ray from the eye.
     mirrored_eyes: Vec<Option<ConeSet<S>>>,
     background: Vector<S>,
-    /// The most bounces: 0 if nothing mirrors.
+    /// The largest number of bounces: 0 if nothing reflects.
     pub(crate) max_reflections: u32,
-    /// Whether it is asked for.
+    /// Computes path hashes, for adaptive sampling.
     hashes_paths: bool,
     formulas: PhantomData<F>,
 }
 
-/// What a ray brings back.
+/// The result of tracing a ray.
 pub(crate) struct Traced<L: Lane> {
     pub(crate) color: Vector<L>,
-    /// The same number for rays that hit the same primitives in the same order, each seen by the
-    /// same lights; 0 if nobody asks.
+    /// A number that is equal for rays that hit the same primitives in the same order, each lit by
+    /// the same lights. 0 unless path hashes are computed.
     pub(crate) path_hash: L::Index,
 }
 
-/// A point to be lit: where, how it is turned, how it answers.
+/// A point to be lit: its position and normal, and its material.
 struct Surface<L: Lane> {
     at: SurfacePoint<L>,
     finish: Finish<L>,
 }
 
 impl<S: Scalar, F: Family> World<S, F> {
-    /// For rays that all start at `eye`, the camera's, and go forward; or else for any.
+    /// Prepares `scene` for rays that all start at `eye`, the camera's position, and go forward;
+    /// without an `eye`, for any rays.
     pub(crate) fn new(scene: &Scene, eye: Option<DVec3>, acceleration: Acceleration) -> Self {
-        // What is left out rests on the formulas' error bounds.
+        // Skipping primitives relies on the formulas' error bounds.
         let acceleration = if F::ERROR_BOUNDED { acceleration } else { Acceleration::None };
         let scene = match (eye, acceleration) {
             (Some(_), Acceleration::Auto) => &cull_behind(scene, S::ROUNDOFF),
@@ -65,7 +70,7 @@ impl<S: Scalar, F: Family> World<S, F> {
             primitives.bound_triangles(scene);
         }
         let cones_from = |point: DVec3| use_cones.then(|| ConeSet::new(scene, point));
-        // Formulas that let a ray slip through a plane may bring it anywhere.
+        // Without error bounds a ray may slip through a plane, so that no plane confines it.
         let confined = eye.filter(|_| F::ERROR_BOUNDED);
         let mirrors = scene.materials.iter().any(|material| material.reflection > 0.0);
         let shining = scene.lights.iter().filter(|light| light.color * light.power != DVec3::ZERO);
@@ -90,11 +95,11 @@ impl<S: Scalar, F: Family> World<S, F> {
         }
     }
 
-    /// The colour at the end of a ray of unit direction, in the lanes of `active`; whether it
-    /// starts at the eye.
+    /// Returns the colour at the end of a ray of unit direction, in the lanes of `active`.
+    /// `from_eye` says that all rays start at the eye.
     ///
-    /// Instead of `(1 - k) surface + k mirrored` from the last bounce back to the first, each
-    /// surface is added with the share that the mirrors before it left.
+    /// Instead of computing `(1 - k) surface + k mirrored` from the last bounce back to the first,
+    /// each surface is added with the share that the mirrors before it left over.
     #[inline(always)]
     pub(crate) fn trace<L: Lane<Scalar = S>>(
         &self,
@@ -117,7 +122,7 @@ impl<S: Scalar, F: Family> World<S, F> {
             }
             let surface = self.surface(&hit, &ray, active);
             let kept = one - surface.finish.reflection;
-            // A full mirror has no light of its own to look for.
+            // A perfect mirror shows no light of its own, so it needs no shadow rays.
             let shown = active & zero.lt(kept);
             if self.hashes_paths {
                 let longer =
@@ -139,7 +144,7 @@ impl<S: Scalar, F: Family> World<S, F> {
         Traced { color, path_hash }
     }
 
-    /// What rays from the eye may meet next if all of `active` hit the same plane.
+    /// Returns the cones of the eye's mirror image, if all rays of `active` hit the same plane.
     #[inline(always)]
     fn mirrored_eye<L: Lane<Scalar = S>>(
         &self,
@@ -151,8 +156,8 @@ impl<S: Scalar, F: Family> World<S, F> {
         self.mirrored_eyes.get(number as usize).filter(|_| !others.any())?.as_ref()
     }
 
-    /// What is hit by rays of `active`, at least one: each distinct primitive is looked up once,
-    /// for all lanes that hit it.
+    /// Returns the surfaces that the rays of `active`, at least one, hit. Each distinct primitive
+    /// is looked up once, for all lanes that hit it.
     #[inline(always)]
     fn surface<L: Lane<Scalar = S>>(
         &self,
@@ -182,7 +187,7 @@ impl<S: Scalar, F: Family> World<S, F> {
         }
     }
 
-    /// Phong's sum over the lights that a point sees.
+    /// Returns Phong's sum over the lights that a point sees.
     #[inline(always)]
     fn shade<L: Lane<Scalar = S>>(
         &self,
@@ -197,10 +202,11 @@ impl<S: Scalar, F: Family> World<S, F> {
         let start_reach = start.sum_of_magnitudes();
         let facing = at.normal.dot(ray.direction);
         let mut color = finish.color * finish.ambient;
-        // Numbered from 2: 1 stands for a hit in a path hash.
+        // Lights are numbered from 2, because 1 stands for a hit in a path hash.
         for (number, light) in (2..).zip(&self.lights) {
-            // Lit from where shadow rays start, which is on the viewer's side for certain: a light
-            // in the surface itself then stands below it, and no rounding makes it shine.
+            // The direction to the light starts where shadow rays start, which is certainly on the
+            // viewer's side. A light in the surface itself is then below it, and no rounding makes
+            // it shine.
             let toward = Vector::splat(light.position) - start;
             let distance = toward.dot(toward).sqrt();
             let inverse_distance = L::literal(1.0) / distance;
@@ -233,7 +239,7 @@ impl<S: Scalar, F: Family> World<S, F> {
             }
             // m . -d with m = 2 (n . l) n - l.
             let mirror_cosine = to_light.dot(ray.direction) - two * cosine * facing;
-            // Where there is none the base is 0, and stays so.
+            // In the other lanes the base is 0, and so is its power.
             let shining = lit & zero.lt(mirror_cosine);
             let highlight = power(mirror_cosine.max(zero), finish.shininess, shining);
             let answer = finish.color * (finish.diffuse * cosine)
@@ -255,7 +261,8 @@ impl<L: Lane> Surface<L> {
     }
 }
 
-/// The ray that a mirror sends on, of unit direction: the error of each bounce is not kept.
+/// Returns the ray that a mirror sends on. Its direction is made unit again, so that errors do not
+/// accumulate from bounce to bounce.
 #[inline(always)]
 fn mirrored<L: Lane>(ray: &Ray<L>, at: &SurfacePoint<L>) -> Ray<L> {
     let along = at.normal.dot(ray.direction);

@@ -1,15 +1,15 @@
-//! What no ray reaches, since nothing sends one back: without mirrors, rays from the eye go
-//! forward, and from what they hit to the lights. All of that lies in front of the eye, or of the
-//! light that is farthest behind it; and since a half space is convex, so does everything in
-//! between.
+//! Culling of what lies behind: without mirrors, no ray turns back.
+//!
+//! Rays from the eye go forward, and shadow rays from what they hit to the lights. All of them stay
+//! in front of the eye, or of the light that is farthest behind it, because a half space is convex.
 
 use crate::scene::{Cylinder, Scene, Sphere, Triangle, unit};
 use crate::shapes::MARGIN;
 use glam::DVec3;
 use std::borrow::Cow;
 
-/// The scene without the spheres, triangles and cylinders that are behind all that its camera's
-/// rays reach. Those that remain keep their order, which decides between equal distances.
+/// Returns the scene without the spheres, triangles and cylinders that lie behind all that its
+/// camera's rays reach. The others keep their order, which decides between equal distances.
 pub(crate) fn cull_behind(scene: &Scene, roundoff: f64) -> Cow<'_, Scene> {
     if scene.materials.iter().any(|material| material.reflection > 0.0) {
         return Cow::Borrowed(scene);
@@ -18,10 +18,10 @@ pub(crate) fn cull_behind(scene: &Scene, roundoff: f64) -> Cow<'_, Scene> {
     let forward = unit(scene.camera.look_at - eye);
     let height = |point: DVec3| forward.dot(point - eye);
     let lowest = scene.lights.iter().map(|light| height(light.position)).fold(0.0, f64::min);
-    // From `center` it extends `radius` in any direction.
+    // The primitive extends from `center` by `radius` in any direction.
     let reached = |center: DVec3, radius: f64| {
         let reach = forward.abs().dot(center.abs() + eye.abs()) + radius;
-        // NaN, of numbers too large for a sum, is not behind.
+        // NaN, from numbers whose sum overflows, is not behind.
         let behind = height(center) + radius < lowest - MARGIN * roundoff * reach;
         !behind
     };

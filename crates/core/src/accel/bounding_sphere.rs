@@ -1,5 +1,7 @@
-//! Spheres around triangles: rays that come near none need not be sorted by axis, which trying a
-//! triangle takes.
+//! Bounding spheres of triangles: they rule out rays cheaply.
+//!
+//! Trying a triangle takes rays that are grouped by their dominant axis. Rays that come near no
+//! triangle need not be grouped.
 
 use crate::ray::Ray;
 use crate::scene;
@@ -7,18 +9,20 @@ use crate::shapes::MARGIN;
 use crate::simd::lane::{Lane, Scalar};
 use crate::simd::vector::Vector;
 
+/// A sphere that holds a triangle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BoundingSphere<S> {
     center: Vector<S>,
     radius: S,
-    /// The largest magnitude of a coordinate.
+    /// The largest magnitude of a coordinate of the sphere.
     reach: S,
 }
 
-/// A radius whose square no number type loses.
+/// The smallest radius whose square no number type loses.
 const SMALLEST: f64 = 1e-15;
 
 impl<S: Scalar> BoundingSphere<S> {
+    /// Makes a sphere around `triangle`.
     pub(crate) fn new(triangle: &scene::Triangle) -> Self {
         let (center, radius) = triangle.around();
         let radius = radius.max(SMALLEST);
@@ -29,9 +33,9 @@ impl<S: Scalar> BoundingSphere<S> {
         }
     }
 
-    /// Whether the whole line of a ray of unit direction comes near the triangle. Its distance from
-    /// the centre is known to 17 roundings of the coordinates; a hit is off by no more than the
-    /// margin has left, barring underflow.
+    /// Returns the rays whose whole line comes near the triangle, for rays of unit direction. The
+    /// distance from the centre is known to 17 roundings of the coordinates. The rest of the margin
+    /// covers the error of a hit, barring underflow.
     #[inline(always)]
     pub(crate) fn may_hit<L: Lane<Scalar = S>>(&self, ray: &Ray<L>) -> L::Mask {
         let Vector { x, y, z } = ray.origin.abs();
@@ -40,7 +44,7 @@ impl<S: Scalar> BoundingSphere<S> {
         let radius = L::splat(self.radius) + margin;
         let aside = (Vector::splat(self.center) - ray.origin).cross(ray.direction);
         let square = aside.dot(aside);
-        // Asked this way, numbers that are none or too large rule nothing out.
+        // In this form, NaN and overflow rule nothing out.
         !((radius * radius).lt(square) & square.lt(L::literal(f64::INFINITY)))
     }
 }
@@ -52,8 +56,9 @@ mod tests {
     use crate::ray::miss;
     use crate::shapes::triangle::{RayPrecomputation, Triangle};
 
-    /// Rays that graze the sphere where a corner of the triangle touches it: none that hits the
-    /// triangle is ruled out, and those that pass a tenth of the radius farther out are.
+    /// Catches a hit that is ruled out: rays graze the sphere where a corner of the triangle
+    /// touches it. Catches a sphere that is too large: rays that pass a tenth of the radius farther
+    /// out are ruled out.
     fn grazing_rays_are_told_apart<S: Scalar>() {
         let mut point = random_points();
         let mut hits = 0;

@@ -1,11 +1,11 @@
-//! A tree of boxes around the bounded primitives: a ray meets few of many.
+//! The bounding volume hierarchy over the bounded primitives: a ray tries few of many.
 //!
-//! Whether a box is entered never changes what is found. A hit may lie a few roundings of the
-//! coordinates off the primitive (see the error bounds beside the shapes), and where a ray grazes a
-//! triangle its `t` is noise anywhere along it. So a box is skipped for two reasons only: the ray's
-//! whole line misses the box made larger by more than those roundings, or, along the axis in which
-//! the ray is longest, the box lies behind the ray or beyond what was found before; in this axis
-//! the `t` of every primitive is within its box.
+//! Skipping a box never changes the result. A hit may lie a few roundings of the coordinates off
+//! the primitive (see the error bounds beside the shapes), and where a ray grazes a triangle its
+//! `t` is noise anywhere along the triangle. So a box is skipped for two reasons only. Either the
+//! ray's whole line misses the box, enlarged by more than those roundings. Or the box lies behind
+//! the ray or beyond the closest hit so far, measured along the dominant axis of the ray: along
+//! this axis the `t` of every primitive is within its box.
 
 use crate::ray::{DirectionClass, Ray};
 use crate::shapes::MARGIN;
@@ -17,46 +17,49 @@ use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb as BuilderAabb;
 use obvhs::bvh2::{Bvh2, builder::build_bvh2};
 
+/// A hierarchy of boxes, each node with two children.
 #[derive(Debug)]
 pub(crate) struct Bvh<S> {
-    /// The root first.
+    /// The nodes, the root first.
     nodes: Vec<Node<S>>,
     leaves: Vec<Leaf>,
     /// The largest magnitude of any coordinate.
     reach: S,
 }
 
+/// A box, and its leaf or children.
 #[derive(Clone, Copy, Debug)]
 struct Node<S> {
     bounds: Aabb<S>,
-    /// The number of its leaf; or of the first of its two children, which lie next to each other.
+    /// The index of the leaf; or of the first of the two children, which lie next to each other.
     first: u32,
     content: Content,
 }
 
+/// The kind of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Content {
     Leaf,
-    /// Two children, the first of which is lower along this axis.
+    /// Two children. The first one is lower along this axis.
     Children {
         axis: u8,
     },
 }
 
-/// The deepest tree that is used. Trees have some two levels more than the logarithm of their size.
+/// The depth of the deepest hierarchy that is used. The depth is usually two more than the
+/// logarithm of the size.
 const MAX_DEPTH: usize = 128;
 
-/// Coordinates up to here: the builder multiplies three of them, in `f32`.
+/// The largest coordinate: the builder multiplies three of them in `f32`.
 const LARGEST: f64 = 1e12;
 
-/// Up to so many primitives the builder first tries all nodes for a better place in the tree; of
-/// more a smaller share, down to its own. It takes 2 to 5 us a primitive. A fractal of 937 spheres
-/// then takes 0.91 [0.84, 0.97] of the time, a cloud of 1,000 about as much, a mesh of 2,000
-/// triangles no less.
+/// Up to this many primitives, the builder tries to reinsert all nodes at a better place; of more
+/// primitives a smaller share. It takes 2 to 5 us a primitive, and saves up to a tenth of a
+/// rendering's time.
 const ALL_TRIED: f32 = 4096.0;
 
-/// How a tree over so many primitives is built. A packet tries a primitive in about the time of two
-/// boxes, so leaves are small.
+/// Returns the builder's parameters for this many primitives. A packet tries a primitive in about
+/// the time of two boxes, so leaves are small.
 fn build_parameters(primitives: usize) -> BvhBuildParams {
     let medium = BvhBuildParams::medium_build();
     BvhBuildParams {
@@ -69,8 +72,10 @@ fn build_parameters(primitives: usize) -> BvhBuildParams {
 }
 
 impl<S: Scalar> Bvh<S> {
-    /// Over primitives in these boxes; `leaf` takes the numbers of those that are tried together.
-    /// None if there is no primitive, or the tree would be too deep.
+    /// Builds the hierarchy over primitives in these boxes. `leaf` is called with the indices of
+    /// primitives that are tried together.
+    ///
+    /// Returns `None` if there is no primitive, or if the hierarchy would be too deep.
     pub(crate) fn build(bounds: &[Aabb<S>], mut leaf: impl FnMut(&[u32]) -> Leaf) -> Option<Self> {
         let whole = bounds.iter().copied().reduce(Aabb::join)?;
         if !whole.reach().lt(S::literal(LARGEST)) {
@@ -87,7 +92,7 @@ impl<S: Scalar> Bvh<S> {
             reach: whole.reach(),
         };
         built.nodes.push(Node { bounds: whole, first: 0, content: Content::Leaf });
-        // Each pair of children lies next to each other, its parent before it.
+        // Children lie next to each other, after their parent.
         let mut pending = vec![(0, 0)];
         while let Some((source, target)) = pending.pop() {
             let node = &bvh.nodes[source];
@@ -116,7 +121,7 @@ impl<S: Scalar> Bvh<S> {
             built.nodes[target].first = first as u32;
             built.nodes[target].content = content;
         }
-        // The boxes in this precision, from the leaves up.
+        // Joins the boxes in this precision, from the leaves up.
         for i in (0..built.nodes.len()).rev() {
             if built.nodes[i].content != Content::Leaf {
                 let first = built.nodes[i].first as usize;
@@ -127,13 +132,14 @@ impl<S: Scalar> Bvh<S> {
         Some(built)
     }
 
+    /// Returns the number of leaves.
     pub(crate) fn leaves(&self) -> usize {
         self.leaves.len()
     }
 
-    /// Shows `found` every leaf that a ray of `wanted`, all with this class, may hit before
-    /// `limit`, with the rays that may, from near to far. `found` returns the rays that still want
-    /// to know, and their limits.
+    /// Calls `found` with every leaf that a ray of `wanted` may hit before `limit`, and with these
+    /// rays, from near to far. All rays have this class. `found` returns the rays that are still
+    /// searching, and their limits.
     #[inline(always)]
     pub(crate) fn traverse<L: Lane<Scalar = S>>(
         &self,
@@ -144,7 +150,7 @@ impl<S: Scalar> Bvh<S> {
         mut found: impl FnMut(&Leaf, L::Mask) -> (L::Mask, L),
     ) {
         let slabs = Slabs::new(ray, class, self.reach);
-        // Far children that are still to be looked at.
+        // The far children that are still to be visited.
         let mut stack = [0_u32; MAX_DEPTH];
         let mut height = 0;
         let mut node = &self.nodes[0];
@@ -158,7 +164,7 @@ impl<S: Scalar> Bvh<S> {
                     }
                 }
                 Content::Children { axis } => {
-                    // Both at once: neither waits for what becomes of the other.
+                    // Tests both children at once, so that neither test waits for the other.
                     let far = u32::from(!class.backward[axis as usize]);
                     let (near, far) = (node.first + 1 - far, node.first + far);
                     let children = [&self.nodes[near as usize], &self.nodes[far as usize]];
@@ -181,7 +187,7 @@ impl<S: Scalar> Bvh<S> {
                     }
                 }
             }
-            // What was found meanwhile may lie before the box.
+            // A hit that was found meanwhile may lie before the box.
             loop {
                 if height == 0 {
                     return;
@@ -197,14 +203,14 @@ impl<S: Scalar> Bvh<S> {
     }
 }
 
-/// What all boxes ask of rays with one class. Axes are in the class's order: the one along
-/// which the rays are longest is last.
+/// The part of the slab test that is the same for all boxes, for rays of one class. Axes are in the
+/// class's order: the dominant one is last.
 struct Slabs<L> {
-    /// For each axis, the place in a box of the side that the rays pass first, and of the other
-    /// one.
+    /// For each axis, the sides of a box that the rays pass first and last, as an index for
+    /// `Aabb::side`.
     sides: [[usize; 2]; 3],
-    /// The origin as seen from each of these sides, moved away by the margin: instead of every box,
-    /// once.
+    /// The origin relative to these sides, moved away by the margin: this is done once for the ray
+    /// instead of for every box.
     origin: [[L; 2]; 3],
     inverse: [L; 3],
 }
@@ -215,8 +221,8 @@ impl<L: Lane> Slabs<L> {
         let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
         let farthest = origin[0].abs().max(origin[1].abs()).max(origin[2].abs());
         let margin = (farthest + L::splat(reach)) * L::literal(MARGIN * L::Scalar::ROUNDOFF);
-        // A direction across the axis is turned, by less than the margin tells: no infinity meets a
-        // zero.
+        // A component near 0 is replaced by one that moves the ray by less than the margin, so that
+        // no infinity is multiplied by a zero.
         let least =
             direction[class.order[2]].abs() * L::literal(L::Scalar::ROUNDOFF * L::Scalar::ROUNDOFF);
         Self {
@@ -236,29 +242,29 @@ impl<L: Lane> Slabs<L> {
         }
     }
 
-    /// The rays that may hit something in the box before `limit`.
+    /// Returns the rays that may hit something in the box before `limit`.
     #[inline(always)]
     fn reach(&self, bounds: &Aabb<L::Scalar>, limit: L) -> L::Mask {
-        // Where the ray passes a side.
+        // The `t` at which the ray passes a side.
         let at = |axis: usize, side: usize| {
             let side_at = L::splat(bounds.side(self.sides[axis][side]));
             (side_at - self.origin[axis][side]) * self.inverse[axis]
         };
-        // Written out: a `map` over an array is not always inlined.
+        // Written out, because a `map` over an array is not always inlined.
         let (x, y, z) = ((at(0, 0), at(0, 1)), (at(1, 0), at(1, 1)), (at(2, 0), at(2, 1)));
         let crossed = x.0.max(y.0).max(z.0).le(x.1.min(y.1).min(z.1));
         crossed & L::literal(0.0).le(z.1) & z.0.le(limit)
     }
 }
 
-/// The box in the builder's numbers. It only guides the tree's shape, so a rounding does not
-/// matter.
+/// Returns the box in the builder's numbers. It only guides the hierarchy's shape, so a rounding
+/// does not matter.
 fn rounded<S: Scalar>(bounds: &Aabb<S>) -> BuilderAabb {
     let corner = |v: Vector<S>| v.widened().as_vec3a();
     BuilderAabb::new(corner(bounds.low()), corner(bounds.high()))
 }
 
-/// Of the deepest leaf, where the root has 1.
+/// Returns the depth of the deepest leaf. The root has depth 1.
 fn depth(bvh: &Bvh2) -> usize {
     let mut deepest = 0;
     let mut pending = vec![(0, 1)];

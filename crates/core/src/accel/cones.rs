@@ -1,11 +1,10 @@
-//! Rays through one point: all that leave the eye, that a plane mirrors straight from there, or
-//! that look at one light.
+//! Direction cones: for rays through one point, each primitive fills a cone of directions.
 //!
-//! Seen from that point a primitive fills a cone of directions. Whether a ray is outside of the
-//! cone is one dot product; only the others are tried. Mostly the rays of a packet are so close
-//! together that one of them can be held against many cones at once, each wider by as much as the
-//! others may be apart from it. The cones are wider than the primitives by more than the errors of
-//! what is tried, so they change no picture, barring underflow.
+//! The point is the eye, its mirror image in a plane, or a light. One dot product tells that a ray
+//! is outside of a cone; only the other primitives are tried. The rays of a packet are mostly so
+//! close together that one of them is tested against many cones at once, each widened by the
+//! largest angle between the rays. The cones are wider than the primitives by more than the errors
+//! of the formulas, so they change no image, barring underflow.
 
 use crate::scene::{self, Scene};
 use crate::shapes::MARGIN;
@@ -13,13 +12,13 @@ use crate::simd::lane::{Lane, Mask, Scalar};
 use crate::simd::vector::Vector;
 use glam::DVec3;
 
-/// A cone for each primitive that is not a plane: spheres, triangles, cylinders, each in file
+/// The cone of each primitive that is not a plane: spheres, triangles, cylinders, each in file
 /// order.
 #[derive(Clone, Debug)]
 pub(crate) struct ConeSet<S> {
     blocks: Vec<Block<S>>,
-    /// What a unit of a ray's length adds to its cosine with all axes: its end is known the less
-    /// exactly, the farther it is, and this counts the more, the nearer a primitive is to the
+    /// The amount added to a ray's cosine with each axis, for a unit of the ray's length. The error
+    /// of a ray's end grows with its length, and matters more, the nearer a primitive is to the
     /// point.
     widening: S,
 }
@@ -28,12 +27,12 @@ pub(crate) struct ConeSet<S> {
 #[derive(Clone, Debug)]
 struct Block<S> {
     cones: Vec<Cone<S>>,
-    /// The same, each wider by `SPREAD` and by `SLACK`: for rays so close together that one of them
-    /// stands for all. What `f32` loses is little beside that.
+    /// The same cones, each widened by `SPREAD` and by `SLACK`: for rays so close together that one
+    /// of them stands for all. The rounding to `f32` is small beside that.
     wider: Cone<Eight>,
 }
 
-/// Eight numbers of `f32`, whatever the picture's precision.
+/// Eight numbers of `f32`, whatever the precision of the image is.
 type Eight = <f32 as Scalar>::Wide256;
 
 /// The directions from the point in which a primitive may be.
@@ -43,29 +42,30 @@ struct Cone<L> {
     cosine: L,
 }
 
-/// The sine of the largest angle to a ray that is tested for others.
+/// The sine of the largest angle between the rays of a packet and the one that is tested for all.
 const SPREAD: f64 = 1.0 / 16.0;
 
-/// The cosine of that angle.
+/// Returns the cosine of that angle.
 fn spread_cosine() -> f64 {
     (1.0 - SPREAD * SPREAD).sqrt()
 }
 
-/// By how much lengths may widen the cones of such rays: in `f32`, of rays up to 100 times as long
-/// as the nearest primitive is far from the point.
+/// The largest widening by the length for which one ray stands for all. In `f32` it covers rays up
+/// to 100 times as long as the closest primitive is far from the point.
 const SLACK: f64 = 1.0 / 1024.0;
 
-/// Of a cone that holds all directions.
+/// The cosine of a cone that holds all directions.
 const EVERYTHING: f64 = -4.0;
 
 impl<S: Scalar> ConeSet<S> {
-    /// The cones of `scene`'s primitives, seen from `point`.
+    /// Makes the cones of `scene`'s primitives, seen from `point`.
     pub(crate) fn new(scene: &Scene, point: DVec3) -> Self {
         Self::around(scene, point, 0.0)
     }
 
-    /// The cones as `mirror` shows them to `eye`: what it sends on comes straight from the eye's
-    /// image behind it, but for the roundings of a hit, of the ray's start and of its direction.
+    /// Makes the cones of the primitives as `mirror` shows them to `eye`. Reflected rays come
+    /// straight from the eye's mirror image, up to the roundings of the hit, of the ray's start and
+    /// of its direction.
     pub(crate) fn mirrored(scene: &Scene, eye: DVec3, mirror: &scene::Plane) -> Self {
         let normal = scene::unit(mirror.normal);
         let image = eye - normal * (2.0 * (eye - mirror.point).dot(normal));
@@ -73,7 +73,7 @@ impl<S: Scalar> ConeSet<S> {
         Self::around(scene, image, MARGIN * S::ROUNDOFF * reach.iter().sum::<f64>())
     }
 
-    /// The cones around a point that is known up to `uncertainty`.
+    /// Makes the cones seen from a point that is known up to `uncertainty`.
     fn around(scene: &Scene, point: DVec3, uncertainty: f64) -> Self {
         let spheres = scene.spheres.iter().map(|s| (s.center, s.radius));
         let triangles = scene.triangles.iter().map(scene::Triangle::around);
@@ -83,7 +83,7 @@ impl<S: Scalar> ConeSet<S> {
         Self::of(around.map(|(center, radius)| (center, radius + uncertainty)), point)
     }
 
-    /// The cones around spheres, each given by its centre and its radius.
+    /// Makes the cones around spheres, each given by its centre and its radius.
     fn of(spheres: impl Iterator<Item = (DVec3, f64)>, point: DVec3) -> Self {
         let (cones, distances): (Vec<_>, Vec<_>) =
             spheres.map(|(center, radius)| Cone::new(point, center, radius)).unzip();
@@ -94,10 +94,12 @@ impl<S: Scalar> ConeSet<S> {
         }
     }
 
-    /// Shows `found` each primitive whose cone some ray of `wanted` is in, by its index among those
-    /// that are not planes, in order, and these rays; `found` returns the rays that still want to
-    /// know. The rays' unit directions away from the point, and their lengths, are `(direction,
-    /// length)`.
+    /// Calls `found` with each primitive whose cone holds a ray of `wanted`, in order: its index
+    /// among the primitives that are not planes, and these rays. `found` returns the rays that are
+    /// still searching.
+    ///
+    /// `direction` and `length` are the rays' unit directions away from the point, and their
+    /// lengths.
     #[inline(always)]
     pub(crate) fn candidates<L: Lane<Scalar = S>>(
         &self,
@@ -131,14 +133,15 @@ impl<S: Scalar> ConeSet<S> {
 }
 
 impl<S: Scalar> Cone<S> {
-    /// Around a sphere, and how far away that is; infinitely, if it does not matter.
+    /// Makes the cone around a sphere, and returns the sphere's distance. The distance is infinite
+    /// if the cone holds all directions.
     fn new(point: DVec3, center: DVec3, radius: f64) -> (Self, f64) {
         let unit = MARGIN * S::ROUNDOFF;
         let toward = center - point;
         let distance = toward.length();
         let reach = center.abs().max_element() + point.abs().max_element() + radius;
         let sine = (radius + unit * reach) / distance;
-        // Too near, or numbers that are none: every direction.
+        // The sphere is too near, or a number is NaN: all directions.
         if !(sine < 0.99 && distance.is_normal()) {
             return (Self { axis: Vector::zero(), cosine: S::from_f64(EVERYTHING) }, f64::INFINITY);
         }
@@ -158,24 +161,25 @@ impl<S: Scalar> Block<S> {
         Self { cones: cones.to_vec(), wider: Cone { axis: Vector::new(x, y, z), cosine } }
     }
 
-    /// The cosine of the angle of a cone, of this cosine, that is made wider.
+    /// Returns the cosine of a cone with this cosine after it is widened by `SPREAD` and `SLACK`.
     fn wider(cosine: f64) -> f64 {
         let cosine = cosine - SLACK;
         if cosine <= -spread_cosine() {
             return EVERYTHING;
         }
         let sum_of_angles = cosine * spread_cosine() - (1.0 - cosine * cosine).sqrt() * SPREAD;
-        // The angle between rays so close is known to 13 / `SPREAD` roundings, all else to 20: of
-        // `f32`, at worst.
+        // The angle between such close rays is known to 13 / `SPREAD` roundings, all else to 20
+        // roundings: of `f32`, at worst.
         sum_of_angles - 8.0 * MARGIN * f32::ROUNDOFF
     }
 }
 
 impl<L: Lane> Cone<L> {
-    /// Whether it holds a unit direction, if its own cosine were less by `widening`.
+    /// Returns the lanes whose unit direction is in the cone, if its cosine were less by
+    /// `widening`.
     #[inline(always)]
     fn holds(&self, direction: Vector<L>, widening: L) -> L::Mask {
-        // Asked this way, numbers that are none rule nothing out.
+        // In this form, NaN rules nothing out.
         !(self.axis.dot(direction) + widening).lt(self.cosine)
     }
 }
@@ -187,8 +191,9 @@ mod tests {
     use std::array::from_fn;
     use wide::{f32x8, f64x4};
 
-    /// Packets of rays next to each other, some closer together than `SPREAD` and some not:
-    /// whatever the cone of any ray holds is shown, as if each cone were asked for each ray.
+    /// Catches a candidate that is left out or shown in vain: packets of neighbouring rays, some
+    /// within `SPREAD` and some not, get the same candidates as if each cone were tested for each
+    /// ray.
     fn no_cone_is_left_out<L: Lane>() {
         let mut point = random_points();
         let (mut together, mut shown) = (0, 0);
@@ -225,13 +230,13 @@ mod tests {
                 usize::from(rays[..L::LANES].iter().all(|ray| ray.dot(rays[0]) > spread_cosine()));
             shown += found.len();
         }
-        // Neither nothing nor everything.
+        // Neither no candidates nor all of them.
         assert!((25_000..75_000).contains(&together), "{together}");
         assert!((20_000..500_000).contains(&shown), "{shown}");
     }
 
-    /// A ray at the edge of a cone that its length widens as much as may be, tested by one as far
-    /// from it as may be and on the far side.
+    /// Catches a widening that is too small: a ray at the edge of a cone, widened as far as
+    /// possible by the ray's length, is tested through a ray as far away as possible.
     fn the_widest_cone_holds_the_farthest_ray<L: Lane>() {
         for radius in [0.01, 0.1, 0.5, 0.9] {
             let cones = ConeSet::<L::Scalar>::of([(DVec3::Z, radius)].into_iter(), DVec3::ZERO);

@@ -7,7 +7,7 @@ use super::cones::ConeSet;
 pub(crate) struct Occluders<S> {
     /// The planes, by number.
     pub(crate) planes: Vec<u32>,
-    /// The direction cones of all other primitives, seen from the light. Without cones each of
-    /// them may be in the way.
+    /// The direction cones of all other primitives, seen from the light. Without cones a shadow ray
+    /// tries each of them.
     pub(crate) cones: Option<ConeSet<S>>,
 }

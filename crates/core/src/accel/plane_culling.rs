@@ -1,28 +1,28 @@
-//! What planes keep apart: no ray crosses one, since it ends there.
+//! Culling by planes: no ray crosses a plane, since it ends there.
 //!
-//! So if all rays start at the eye, everything they ever reach is on the eye's side of every plane.
-//! A light on the other side lights nothing, and one on this side is hidden by no plane, since what
-//! is on one side is convex.
+//! If all rays start at the eye, everything they reach is on the eye's side of every plane, and the
+//! space on this side is convex. So a light on the other side lights nothing, and a light on this
+//! side is hidden by no plane.
 //!
-//! That holds for points. A computed point may be some roundings behind a plane that it is next to,
-//! and would then be in its shadow: so this is not only a saving but part of what the robust
-//! formulas mean, in every search.
+//! That holds for exact points. A computed point may be some roundings behind a plane that it
+//! touches, and would then be in the plane's shadow. So this is part of the meaning of the robust
+//! formulas, with and without acceleration, and not only an optimisation.
 
 use crate::scene::{Plane, Scene, unit};
 use crate::shapes::MARGIN;
 use glam::DVec3;
 
-/// On which side of a plane something is.
+/// The side of a plane that a point is on.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Side {
     Front,
     Back,
-    /// Too near to tell, given rounding.
+    /// Too near to the plane to tell, given rounding.
     Unknown,
 }
 
-/// The planes, by number, that may hide a light from what rays from `eye` reach; none if the light
-/// lights nothing of that. Without an `eye`, rays may start anywhere.
+/// Returns the numbers of the planes that may hide a light from what rays from `eye` reach, or
+/// `None` if the light lights nothing of it. Without an `eye`, rays may start anywhere.
 pub(crate) fn hiding_planes(
     scene: &Scene,
     light: DVec3,
@@ -41,7 +41,7 @@ pub(crate) fn hiding_planes(
     Some(hiding)
 }
 
-/// As far from the plane as no error of a hit reaches.
+/// Returns the side of a point that is farther from the plane than any error of a hit.
 fn side(plane: &Plane, point: DVec3, roundoff: f64) -> Side {
     let normal = unit(plane.normal);
     let height = normal.dot(point - plane.point);

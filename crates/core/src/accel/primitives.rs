@@ -1,5 +1,4 @@
-//! All primitives of a scene, and the two questions a ray asks of them: what is closest, and is
-//! anything in between.
+//! All primitives of a scene, and the two questions that rays ask: the closest hit, and occlusion.
 
 use crate::accel::bounding_sphere::BoundingSphere;
 use crate::accel::bvh::Bvh;
@@ -20,31 +19,32 @@ use crate::shapes::triangle::{self, Triangle};
 use crate::simd::lane::{Lane, Mask, Scalar};
 use crate::simd::vector::Vector;
 
-/// From so many bounded primitives on there is a tree: of 63 spheres that mirror each other each is
-/// tried in less time (METHODOLOGY.md), of a thousand a tree is far ahead.
+/// A BVH is built from this many bounded primitives on. At 63 mirrored spheres trying each is still
+/// faster; at 1,000 the BVH wins clearly (METHODOLOGY.md).
 const BVH_MIN_PRIMITIVES: usize = 64;
 
 /// The primitives by kind. A primitive's number counts through planes, spheres, triangles and
-/// cylinders, each in file order: it decides between equal distances.
+/// cylinders, each in file order. It decides between equal distances.
 #[derive(Debug)]
 pub(crate) struct Primitives<S> {
     planes: Vec<Plane<S>>,
     spheres: ShapeList<Sphere<S>>,
     triangles: ShapeList<Triangle<S>>,
     cylinders: ShapeList<Cylinder<S>>,
-    /// All triangles, and all others that are not planes.
+    /// All triangles, and all spheres and cylinders.
     triangles_and_others: [Leaf; 2],
-    /// Over these, where there are enough of them.
+    /// The hierarchy over the bounded primitives, if there are enough of them.
     bvh: Option<Bvh<S>>,
-    /// Around each triangle, where the closest hit is asked for rays of unit direction only and no
-    /// tree finds it.
+    /// The bounding sphere of each triangle; empty unless all rays have unit direction and there is
+    /// no BVH.
     triangle_bounds: Vec<BoundingSphere<S>>,
-    /// The material of each primitive, by its number.
+    /// The material of each primitive, by number.
     materials: Vec<usize>,
 }
 
 impl<S: Scalar> Primitives<S> {
-    /// With a tree over the bounded primitives if `acceleration` wants one and it pays.
+    /// Makes the primitives of `scene`, with a BVH if `acceleration` allows it and there are enough
+    /// of them.
     pub(crate) fn new(scene: &Scene, acceleration: Acceleration) -> Self {
         let materials = (scene.planes.iter().map(|p| p.material))
             .chain(scene.spheres.iter().map(|s| s.material))
@@ -77,22 +77,24 @@ impl<S: Scalar> Primitives<S> {
         primitives
     }
 
+    /// Returns the number of primitives.
     pub(crate) fn count(&self) -> usize {
         self.materials.len()
     }
 
-    /// Of the tree, if there is one.
+    /// Returns the number of leaves of the BVH, if there is one.
     pub(crate) fn leaves(&self) -> Option<usize> {
         self.bvh.as_ref().map(Bvh::leaves)
     }
 
-    /// From now on all rays of which the closest hit is asked have unit direction. No shadow ray
-    /// asks what it comes near: where there are enclosures, lights have bundles.
+    /// Makes bounding spheres of the triangles. From then on, every ray whose closest hit is
+    /// searched must have unit direction. Shadow rays do not use the spheres, because lights have
+    /// cones then.
     pub(crate) fn bound_triangles(&mut self, scene: &Scene) {
         self.triangle_bounds = scene.triangles.iter().map(BoundingSphere::new).collect();
     }
 
-    /// Puts a tree over the bounded primitives, if there are enough of them.
+    /// Builds a BVH over the bounded primitives, if there are enough of them.
     fn build_bvh(&mut self) {
         let Self { spheres, triangles, cylinders, .. } = self;
         let counts = [spheres.shapes.len(), triangles.shapes.len(), cylinders.shapes.len()];
@@ -103,7 +105,7 @@ impl<S: Scalar> Primitives<S> {
             .chain(triangles.shapes.iter().map(Triangle::bounds))
             .chain(cylinders.shapes.iter().map(Cylinder::bounds))
             .collect();
-        // The shapes of a leaf get places next to each other.
+        // The shapes of a leaf get neighbouring positions.
         let mut order = [vec![], vec![], vec![]];
         self.bvh = Bvh::build(&bounds, |members| {
             let from = order.each_ref().map(|places| places.len() as u32);
@@ -126,8 +128,8 @@ impl<S: Scalar> Primitives<S> {
         }
     }
 
-    /// What the shapes of each kind that is there ask of a ray; triangles, if `order` tells the
-    /// axis along which it is longest.
+    /// Computes the ray's part of the formulas for each kind that the scene has; for triangles,
+    /// only if `order` names the ray's dominant axis.
     #[inline(always)]
     fn precompute<L: Lane<Scalar = S>>(
         &self,
@@ -154,9 +156,11 @@ impl<S: Scalar> Primitives<S> {
         }
     }
 
-    /// The smallest `t` of the rays of `wanted`; of equal ones that of the lowest number. Of rays
-    /// that all come from one point `from` knows what they may meet, and how far away from it they
-    /// start; their directions are of unit length.
+    /// Returns the closest hit of the rays of `wanted`. Of hits at the same distance it is that of
+    /// the lowest number.
+    ///
+    /// If all rays come from one point, `from` holds the cones seen from it and the distance from
+    /// it at which the rays start. The directions have unit length then.
     #[inline(always)]
     pub(crate) fn closest_hit<L: Lane<Scalar = S>, F: Family>(
         &self,
@@ -198,8 +202,8 @@ impl<S: Scalar> Primitives<S> {
         closest
     }
 
-    /// Shows `leaf` all bounded primitives: triangles for each axis along which rays are longest,
-    /// if the formulas ask for it.
+    /// Calls `leaf` with all bounded primitives: with the triangles once for each dominant axis, if
+    /// the formulas need it.
     #[inline(always)]
     fn by_axis<L: Lane<Scalar = S>, F: Family>(
         &self,
@@ -231,15 +235,16 @@ impl<S: Scalar> Primitives<S> {
         });
     }
 
-    /// The rays of `wanted` that come near any triangle, or all if that is not known.
+    /// Returns the rays of `wanted` that come near any triangle, or all of them without bounding
+    /// spheres.
     #[inline(always)]
     fn near_any_triangle<L: Lane<Scalar = S>>(&self, ray: &Ray<L>, wanted: L::Mask) -> L::Mask {
         let Some((first, others)) = self.triangle_bounds.split_first() else { return wanted };
         wanted & others.iter().fold(first.may_hit(ray), |near, around| near | around.may_hit(ray))
     }
 
-    /// Where rays of `wanted` hit the primitive in place `i` of all that are not planes, without a
-    /// tree.
+    /// Returns the `t` at which rays of `wanted` hit the primitive at index `i` of all bounded
+    /// ones, in file order. There is no BVH.
     #[inline(always)]
     fn bounded_primitive<L: Lane<Scalar = S>, F: Family>(
         &self,
@@ -257,8 +262,9 @@ impl<S: Scalar> Primitives<S> {
         self.cylinder::<L, F>(i - self.triangles.shapes.len(), ray, wanted)
     }
 
-    // Where rays of `wanted` hit the shape of a kind in place `i`. Called where few rays come, and
-    // so not copied there: every copy is compiled for each number type and formula.
+    // The following return the `t` at which rays of `wanted` hit the shape at index `i` of a kind.
+    // Few rays come here, so they are not inlined: each copy is compiled for every number type and
+    // family of formulas.
 
     #[inline(never)]
     fn sphere<L: Lane<Scalar = S>, F: Family>(&self, i: usize, ray: &Ray<L>, wanted: L::Mask) -> L {
@@ -314,8 +320,8 @@ impl<S: Scalar> Primitives<S> {
         }
     }
 
-    /// The lanes of `wanted` whose ray, on the `path` to the light of these `occluders`, meets something
-    /// before `limit`.
+    /// Returns the lanes of `wanted` whose shadow ray hits something before `limit`. The ray goes
+    /// along `path` to the light of these `occluders`.
     #[inline(always)]
     pub(crate) fn occluded<L: Lane<Scalar = S>, F: Family>(
         &self,
@@ -364,7 +370,7 @@ impl<S: Scalar> Primitives<S> {
         wanted & !clear
     }
 
-    /// The lanes of `wanted` that meet nothing of `leaf` before `limit`.
+    /// Returns the lanes of `wanted` that hit nothing of `leaf` before `limit`.
     #[inline(never)]
     fn unoccluded_in_leaf<L: Lane<Scalar = S>, F: Family>(
         &self,
@@ -396,14 +402,14 @@ impl<S: Scalar> Primitives<S> {
         clear
     }
 
-    /// The index of a primitive's material.
+    /// Returns the index of a primitive's material.
     #[inline(always)]
     pub(crate) fn material(&self, number: u32) -> usize {
         self.materials[number as usize]
     }
 
-    /// The point of primitive `number` that the ray hits at `t`, the normal turned against the ray:
-    /// surfaces have two sides.
+    /// Returns the point at which the ray hits primitive `number`. The normal points against the
+    /// ray, since surfaces have two sides.
     #[inline(always)]
     pub(crate) fn surface<L: Lane<Scalar = S>, F: Family>(
         &self,
@@ -418,7 +424,7 @@ impl<S: Scalar> Primitives<S> {
         at
     }
 
-    /// The point of primitive `number` next to `near`, and its normal there.
+    /// Returns the point of primitive `number` that is closest to `near`, and its normal there.
     #[inline(always)]
     fn surface_near<L: Lane<Scalar = S>>(&self, number: u32, near: Vector<L>) -> SurfacePoint<L> {
         if let Some(plane) = self.planes.get(number as usize) {

@@ -10,13 +10,14 @@ use crate::simd::lane::Lane;
 use crate::simd::vector::Vector;
 use std::fmt::Debug;
 
-/// A family of formulas, as the tracer is compiled for it.
+/// A family of formulas, for which the tracer is compiled.
 ///
-/// The first four give the smallest `t` that counts as a hit, or [`miss`](crate::ray::miss); so too
-/// for rays that are not in `wanted`, which need not be computed.
+/// The first four functions return the smallest `t` that counts as a hit, or
+/// [`miss`](crate::ray::miss). For rays that are not in `wanted` they may return a miss without
+/// computing anything.
 pub(crate) trait Family: Debug + Send + Sync + 'static {
-    /// Whether the formulas err by no more than a few roundings of the coordinates. Then boxes that
-    /// are larger by some more of them are missed by no hit, and nothing is hit behind a plane.
+    /// True if the formulas err by no more than a few roundings of the coordinates. Then a box that
+    /// is enlarged by more than these roundings holds every hit, and nothing is hit behind a plane.
     const ERROR_BOUNDED: bool;
 
     fn plane<L: Lane>(plane: &Plane<L::Scalar>, ray: &Ray<L>) -> L;
@@ -39,15 +40,16 @@ pub(crate) trait Family: Debug + Send + Sync + 'static {
         wanted: L::Mask,
     ) -> L;
 
-    /// What becomes of the hit `near` a surface, given the surface's own point next to it.
+    /// Returns the point at which rays leave a surface that was hit `near` it, given the closest
+    /// point of the surface.
     fn snap_to_surface<L: Lane>(near: Vector<L>, on_surface: SurfacePoint<L>) -> SurfacePoint<L>;
 
-    /// The ray along a path to a light, and the `t` that a surface has to be nearer than to hide
-    /// it.
+    /// Returns the ray along a path to a light, and the `t` below which a surface hides the light.
     fn shadow_ray<L: Lane>(path: &LightPath<L>) -> (Ray<L>, L);
 }
 
-/// What of a ray is the same for all shapes of a kind: computed once, for kinds that are there.
+/// The part of the formulas that depends on the ray alone, for each kind of shape that the scene
+/// has.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RayPrecomputations<L> {
     pub(crate) sphere: sphere::RayPrecomputation<L>,
@@ -55,17 +57,17 @@ pub(crate) struct RayPrecomputations<L> {
     pub(crate) cylinder: cylinder::RayPrecomputation<L>,
 }
 
-/// The way from a surface to a light.
+/// The path from a surface to a light.
 pub(crate) struct LightPath<L> {
-    /// Where it begins, off the surface.
+    /// The start of the path, off the surface.
     pub(crate) start: Vector<L>,
-    /// From there to the light.
+    /// The vector from there to the light.
     pub(crate) toward: Vector<L>,
     /// The same at unit length.
     pub(crate) to_light: Vector<L>,
-    /// The length.
+    /// The length of the path.
     pub(crate) distance: L,
-    /// One over it.
+    /// One over the length.
     pub(crate) inverse_distance: L,
     /// The sum of the magnitudes of the coordinates of both ends.
     pub(crate) reach: L,

@@ -1,4 +1,4 @@
-//! The formulas that keep their digits; those of the shapes stand beside the shapes.
+//! The robust formulas, which keep their digits. Those of the shapes are written beside the shapes.
 
 use super::family::{Family, LightPath};
 use crate::ray::Ray;
@@ -52,15 +52,15 @@ impl Family for Robust {
         cylinder.intersect(ray, precomputed, wanted)
     }
 
-    /// The hit is moved onto the surface: what is left of its error is bounded by the offset bound.
+    /// Moves the hit onto the surface. The rest of its error is at most the offset bound.
     #[inline(always)]
     fn snap_to_surface<L: Lane>(_near: Vector<L>, on_surface: SurfacePoint<L>) -> SurfacePoint<L> {
         on_surface
     }
 
-    /// `t` counts in the way to the light, and ends a little before 1: a surface that passes
-    /// through the light does not hide it. Where such a surface lies is known to about 16 roundings
-    /// of the coordinates of both ends, as in the offset bound of a hit.
+    /// Measures `t` in units of the path, and ends a little before 1, so that a surface that passes
+    /// through the light does not hide it. The position of such a surface is known to about 16
+    /// roundings of the coordinates of both ends, like the offset bound of a hit.
     #[inline(always)]
     fn shadow_ray<L: Lane>(path: &LightPath<L>) -> (Ray<L>, L) {
         let uncertain = path.reach * path.inverse_distance * L::literal(16.0 * L::Scalar::ROUNDOFF);

@@ -1,4 +1,4 @@
-//! The formulas of the lab report, its slips mended: to see what they cost, and what they cost not.
+//! The formulas of the lab report with its errors corrected: to compare their time and their error.
 
 use super::family::{Family, LightPath};
 use crate::ray::{Ray, miss};
@@ -14,8 +14,8 @@ use crate::simd::vector::Vector;
 #[derive(Debug)]
 pub(crate) struct Textbook;
 
-/// The report's constant: a hit nearer than this is the surface that the ray comes from. It is a
-/// length in scene units, so it is right for scenes of one scale only.
+/// The report's constant: a closer hit is taken for the surface that the ray comes from. It is a
+/// length in scene units, so it suits scenes of one scale only.
 const OFFSET: f64 = 1e-3;
 
 impl Family for Textbook {
@@ -41,9 +41,11 @@ impl Family for Textbook {
         first_root(a, b, c, wanted, beyond_offset)
     }
 
-    /// The plane, then on which side of each edge the point lies: three cross products. The point
-    /// is off by some `4u` of its coordinates and `t |d|`, differently for each triangle: an edge
-    /// that two share may belong to neither.
+    /// Intersects the plane, then tests on which side of each edge the point lies, with three cross
+    /// products.
+    ///
+    /// The point is off by some `4u` of its coordinates and `t |d|`, differently for each triangle.
+    /// So a point on an edge that two triangles share may belong to neither.
     #[inline(always)]
     fn triangle<L: Lane>(
         triangle: &Triangle<L::Scalar>,
@@ -85,7 +87,7 @@ impl Family for Textbook {
         first_root(a, b, c, wanted, on_wall)
     }
 
-    /// The hit stays where `t` says, and rays leave from there.
+    /// Keeps the hit where `t` says, and lets rays leave from there.
     #[inline(always)]
     fn snap_to_surface<L: Lane>(near: Vector<L>, on_surface: SurfacePoint<L>) -> SurfacePoint<L> {
         SurfacePoint { point: near, offset_bound: L::literal(0.0), ..on_surface }
@@ -107,9 +109,10 @@ fn plane_root<L: Lane>(point: Vector<L>, normal: Vector<L>, ray: &Ray<L>) -> L {
     normal.dot(point - ray.origin) / normal.dot(ray.direction)
 }
 
-/// The smaller of the roots of `a t^2 + b t + c` that counts. The discriminant cancels: its error
-/// is about `8u b^2`, whatever is left of it, and so may be all of the root. A ray along a
-/// cylinder's axis has `a = 0`, and NaN or infinities for roots.
+/// Returns the smaller of the roots of `a t^2 + b t + c` that counts.
+///
+/// The discriminant cancels: its error is about `8u b^2`, which may be all of it, and all of the
+/// root. A ray along a cylinder's axis has `a = 0`, and roots that are NaN or infinite.
 #[inline(always)]
 fn first_root<L: Lane>(a: L, b: L, c: L, wanted: L::Mask, counts: impl Fn(L) -> L::Mask) -> L {
     let discriminant = b * b - L::literal(4.0) * a * c;

@@ -1,48 +1,48 @@
-//! Lattice points that need no ray: where the pixel centres around them look alike, they are
-//! interpolated.
+//! Adaptive sampling: interpolates lattice points where the pixel centres around them look alike.
 //!
-//! A point between two centres is decided by these two, one amid four centres by the four. So
-//! whoever computes it decides alike, whichever tile it is in.
+//! A point between two centres depends on these two, a point amid four centres on the four. So
+//! every tile decides alike, whichever point it computes.
 
 use crate::render::lattice::LatticeSums;
 use crate::render::samples::{Colors, SamplePositions, lattice_distance};
 use crate::simd::lane::Scalar;
 
-/// The centres of a row of pixels and of one more on either side.
+/// A row of pixel centres, with one more centre at either end.
 #[derive(Clone, Debug)]
 struct Centres<S> {
     colors: [Vec<S>; 3],
     path_hashes: Vec<u32>,
 }
 
-/// The lattice of a tile, band by band: from one row of pixel centres down to the next.
+/// The lattice of a tile, computed band by band: a band reaches from one row of pixel centres to
+/// the next.
 pub(crate) struct Bands<S> {
-    /// Lattice steps from one centre to the next.
+    /// The number of lattice steps from one centre to the next.
     density: usize,
-    /// Of centres in a row.
+    /// The number of centres in a row.
     count: usize,
     above: Option<Centres<S>>,
     below: Option<Centres<S>>,
-    /// For a moment: the colours in one channel so many steps right of each centre, above and
+    /// Scratch space: one channel of the colours at the same offset right of each centre, above and
     /// below.
     mixed: [Vec<S>; 2],
 }
 
 impl<S: Scalar> Bands<S> {
-    /// For a tile of `width` pixels, with `density` steps a pixel.
+    /// Makes the bands of a tile of `width` pixels, with `density` lattice steps a pixel.
     pub(crate) fn new(density: usize, width: usize) -> Self {
         Self { density, count: width + 2, above: None, below: None, mixed: Default::default() }
     }
 
-    /// The positions of the next row of centres, on row 0.
-    pub(crate) fn position_centres(&self, positions: &mut SamplePositions<S>) {
+    /// Lists the positions of the next row of centres, with y = 0.
+    pub(crate) fn centre_positions(&self, positions: &mut SamplePositions<S>) {
         positions.clear();
         for centre in 0..self.count {
             positions.push(lattice_distance((centre * self.density) as i64), S::literal(0.0));
         }
     }
 
-    /// Takes over their colours and path hashes.
+    /// Stores the colours and path hashes of the next row of centres.
     pub(crate) fn take_centres(&mut self, found: &Colors<S>) {
         let centres = Centres {
             colors: found.channels.each_ref().map(|channel| channel[..self.count].to_vec()),
@@ -51,9 +51,10 @@ impl<S: Scalar> Bands<S> {
         self.above = self.below.replace(centres);
     }
 
-    /// Interpolates the band that ends with the row of centres, its last row. `positions` are those of
-    /// the points whose centres do not look alike, counted from its first row: their colours are
-    /// what `sums` expects.
+    /// Interpolates the band that ends with the newest row of centres, which is its last row.
+    ///
+    /// Afterwards `positions` lists the points whose centres differ, counted from the band's first
+    /// row; `sums` expects their colours in this order.
     pub(crate) fn interpolate(
         &mut self,
         sums: &mut LatticeSums<'_, S>,
@@ -62,11 +63,11 @@ impl<S: Scalar> Bands<S> {
         positions.clear();
         sums.start_strip(self.density);
         self.interpolate_all(sums);
-        self.position_unlike(sums, positions);
+        self.list_differing(sums, positions);
     }
 
-    /// Every point, also where the centres do not look alike: all together, that is quicker than to
-    /// ask of each.
+    /// Interpolates every point of the band, also those whose centres differ: that is faster than
+    /// to test each point.
     fn interpolate_all(&mut self, sums: &mut LatticeSums<'_, S>) {
         let (density, last) = (self.density, self.density - 1);
         let Some(below) = &self.below else { return };
@@ -82,7 +83,7 @@ impl<S: Scalar> Bands<S> {
             };
             lerp_across(below, bottom);
             sums.points_mut(channel, dx, last)[..bottom.len()].copy_from_slice(bottom);
-            // Above the first row of centres the lattice has nothing.
+            // The lattice has no points above the first row of centres.
             let Some(above) = &self.above else { continue };
             lerp_across(above, top);
             for row in 0..last {
@@ -95,9 +96,9 @@ impl<S: Scalar> Bands<S> {
         }
     }
 
-    /// SamplePositions the points whose centres do not look alike, cell by cell, each from a centre to the
-    /// next one right and the next one down: so those that follow each other are neighbours.
-    fn position_unlike(&self, sums: &mut LatticeSums<'_, S>, positions: &mut SamplePositions<S>) {
+    /// Lists the points whose centres differ, cell by cell, so that the packets hold neighbours. A
+    /// cell reaches from a centre to the next one to the right and the next one below.
+    fn list_differing(&self, sums: &mut LatticeSums<'_, S>, positions: &mut SamplePositions<S>) {
         let (density, last) = (self.density, self.density - 1);
         let Some(below) = &self.below else { return };
         for centre in 0..self.count {
@@ -135,7 +136,7 @@ impl<S: Scalar> Bands<S> {
     }
 }
 
-/// The number at `share` of the way from one to another.
+/// Returns the number at `share` of the way from one number to another.
 #[inline(always)]
 fn lerp<S: Scalar>(from: S, to: S, share: S) -> S {
     from + (to - from) * share

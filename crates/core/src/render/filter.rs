@@ -1,5 +1,7 @@
-//! The filter `exp(-(dx^2 + dy^2) / 0.64)` over the square out to one pixel from a pixel's centre,
-//! as a sum over samples. It is the product of the same function of each coordinate.
+//! The reconstruction filter `exp(-(dx^2 + dy^2) / 0.64)`, as a weighted sum over samples.
+//!
+//! It covers the square that reaches one pixel from a pixel's centre in each direction, and is the
+//! product of the same function of each coordinate.
 
 use crate::render::samples::{Colors, SamplePositions};
 use crate::scene::RenderSettings;
@@ -7,38 +9,39 @@ use crate::simd::lane::Scalar;
 use crate::simd::vector::Vector;
 use rayweave_contract::Rgb;
 
-/// The samples of a pixel, row by row: the same around every pixel's centre.
+/// The samples of a pixel, row by row. They are the same around the centre of every pixel.
 #[derive(Clone, Debug)]
 pub(crate) struct Filter<S> {
     rows: Vec<Row<S>>,
-    /// The offsets of all samples from the centre.
+    /// The offsets of all samples from the pixel's centre, row by row.
     positions: SamplePositions<S>,
-    /// The unit of positions: so many half steps are half a pixel.
+    /// The unit of positions: half a pixel is this many half lattice steps.
     density: u32,
-    /// Of each sample across a pixel, if the samples are on a square lattice.
+    /// The weights of the samples across a pixel, if the samples are on a square lattice.
     lattice: Option<Vec<S>>,
 }
 
-/// Samples of one height.
+/// The samples of a pixel with the same y.
 #[derive(Clone, Debug)]
 pub(crate) struct Row<S> {
-    /// Below the pixel's centre, in half steps.
+    /// The distance below the pixel's centre, in half lattice steps.
     pub(crate) dy: S,
-    /// Of the row; those of all rows have a sum of 1 but for rounding.
+    /// The weight of the row. The weights of all rows sum to 1, up to rounding.
     pub(crate) weight: S,
     pub(crate) samples: Vec<Sample<S>>,
 }
 
-/// One ray.
+/// A sample in a row: one ray.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sample<S> {
-    /// To the right of the pixel's centre, in half steps.
+    /// The distance to the right of the pixel's centre, in half lattice steps.
     pub(crate) dx: S,
-    /// Within the row, where the sum is 1 but for rounding.
+    /// The weight within the row. The weights of a row sum to 1, up to rounding.
     pub(crate) weight: S,
 }
 
 impl<S: Scalar> Filter<S> {
+    /// Makes the samples that `settings` ask for.
     pub(crate) fn new(settings: &RenderSettings) -> Self {
         if settings.has_lattice() {
             Self::lattice(settings.antialiasing)
@@ -57,27 +60,29 @@ impl<S: Scalar> Filter<S> {
         Self { positions, rows, density, lattice }
     }
 
-    /// Half steps from a pixel's edge to its centre.
+    /// Returns the number of half lattice steps from a pixel's edge to its centre.
     pub(crate) fn density(&self) -> u32 {
         self.density
     }
 
-    /// The weights of the `2 s + 1` samples across a pixel, for samples on a square lattice, which
-    /// neighbouring pixels share.
+    /// Returns the weights of the `2 s + 1` samples across a pixel, if the samples are on a square
+    /// lattice, which neighbouring pixels share.
     pub(crate) fn lattice_weights(&self) -> Option<&[S]> {
         self.lattice.as_deref()
     }
 
-    /// The offset of each sample from the centre, row by row.
+    /// Returns the offset of each sample from the pixel's centre, row by row.
     pub(crate) fn positions(&self) -> &SamplePositions<S> {
         &self.positions
     }
 
-    /// Neighbouring pixels, the first one's samples' colours beginning at number `first`.
+    /// Computes neighbouring pixels. The colours of the first pixel's samples begin at index
+    /// `first`.
     pub(crate) fn sums(&self, colors: &Colors<S>, first: usize, pixels: &mut [Rgb]) {
         let samples = self.positions.len();
         if samples == 1 {
-            // The general sum is a noticeable share of such a rendering.
+            // With one sample a pixel, the general sum would be a noticeable share of the
+            // rendering.
             let here = colors.range(first..first + pixels.len());
             for (pixel, color) in pixels.iter_mut().zip(here) {
                 *pixel = color.to_array().map(S::to_f32);
@@ -89,16 +94,16 @@ impl<S: Scalar> Filter<S> {
         }
     }
 
-    /// The pixel whose samples' colours begin at number `first`.
+    /// Returns the pixel whose samples' colours begin at index `first`.
     ///
-    /// Each row of samples is summed from the left, then the rows from the top: a fixed order, and
-    /// one in which a row's sum serves every pixel that needs it.
+    /// Sums each row of samples from the left, then the rows from the top. The order is fixed
+    /// because it decides the bits; it allows a row's sum to serve every pixel that needs it.
     fn sum(&self, colors: &Colors<S>, first: usize) -> Rgb {
         let mut sample_colors = colors.range(first..first + self.positions.len());
         let mut color = Vector::zero();
         for row in &self.rows {
             let mut row_color = Vector::zero();
-            // `zip` asks its left side first: at a row's end it takes no colour of the next row.
+            // `zip` asks its left side first, so at a row's end it takes no colour of the next row.
             for (sample, color_there) in row.samples.iter().zip(&mut sample_colors) {
                 row_color = row_color + color_there * sample.weight;
             }
@@ -107,12 +112,12 @@ impl<S: Scalar> Filter<S> {
         color.to_array().map(S::to_f32)
     }
 
-    /// `(2 s + 1)^2` samples of a square lattice with `s` steps a pixel. Positions are whole numbers
-    /// of half steps, so neighbouring pixels share them to the bit.
+    /// Makes `(2 s + 1)^2` samples on a square lattice with `s` steps a pixel. Positions are whole
+    /// numbers of half lattice steps, so neighbouring pixels share them exactly.
     fn lattice(density: u32) -> Self {
         let reach = f64::from(density);
         let steps = || (0..=2 * density).map(|i| f64::from(i) - reach);
-        // `libm` computes in software: the same bits on every machine.
+        // `libm` computes in software, so the bits are the same on every machine.
         let weight = |step: f64| libm::exp(-(step / reach) * (step / reach) / 0.64);
         let sum: f64 = steps().map(weight).sum();
         let samples: Vec<Sample<S>> = steps()
@@ -130,18 +135,20 @@ impl<S: Scalar> Filter<S> {
         Self::of_rows(samples.iter().map(row).collect(), density, Some(lattice))
     }
 
-    /// `count` samples of equal weight, as dense as the filter is high (filter importance sampling:
-    /// Ernst, Stamminger and Greiner, 2006): the points of a rank-1 lattice in the unit square
-    /// (Dammertz and Keller, Image Synthesis by Rank-1 Lattices, 2008), each coordinate moved by
-    /// the inverse of the filter's distribution. No two share a row or a column, so an edge along
-    /// an axis is resolved `count` fold, where a square lattice of as many samples resolves it by
-    /// the square root of that.
+    /// Makes `count` samples of equal weight, distributed like the filter (filter importance
+    /// sampling: Ernst, Stamminger and Greiner, 2006).
+    ///
+    /// They are the points of a rank-1 lattice in the unit square (Dammertz and Keller, Image
+    /// Synthesis by Rank-1 Lattices, 2008), each coordinate mapped by the inverse of the filter's
+    /// distribution. No two share a row or a column, so an edge along an axis is resolved into
+    /// `count` levels; a square lattice of as many samples resolves it into the square root of
+    /// that.
     fn importance(count: u32) -> Self {
         let generator = rank1_generator(count);
-        // Turned by half a turn around the pixel's centre the samples are what they were: so what
-        // changes evenly across the pixel is right to the last digit. It asks that the row of the
-        // first column, `shift`, is as far from the top as that of the last is from the bottom:
-        // 2 shift = generator - 1, modulo the odd count.
+        // The samples are symmetric about the pixel's centre, so that a linear gradient is filtered
+        // without error. For that, the row of the first column, `shift`, has to be as far from the
+        // top as the row of the last column is from the bottom: 2 shift = generator - 1, modulo the
+        // odd count.
         let shift = (u64::from(generator) + u64::from(count) - 1) * u64::from(count).div_ceil(2);
         let half_pixels =
             |i: u64| S::from_f64(2.0 * filter_quantile((i as f64 + 0.5) / f64::from(count)));
@@ -157,8 +164,10 @@ impl<S: Scalar> Filter<S> {
     }
 }
 
-/// The `g` for which the points `(i, i g)` modulo `count`, an odd number, keep the largest distance
-/// from each other, around the edges too, and lie in different rows.
+/// Returns the generator `g` of the best rank-1 lattice of `count` points, an odd number.
+///
+/// The points `(i, i g)` modulo `count` lie in different rows, and their smallest distance from
+/// each other, across the edges too, is the largest possible.
 fn rank1_generator(count: u32) -> u32 {
     let around = |x: u64| x.min(u64::from(count) - x).pow(2);
     let distance = |g: u32| {
@@ -167,7 +176,7 @@ fn rank1_generator(count: u32) -> u32 {
         points.min().unwrap_or(0)
     };
     let one_a_row = |g: &u32| greatest_common_divisor(*g, count) == 1;
-    // Those above the middle are mirror images; of equal ones the first.
+    // Generators above the middle give mirror images. Of equally good ones, takes the first.
     (1..=count / 2).filter(one_a_row).rev().max_by_key(|&g| distance(g)).unwrap_or(1)
 }
 
@@ -175,11 +184,11 @@ fn greatest_common_divisor(a: u32, b: u32) -> u32 {
     if b == 0 { a } else { greatest_common_divisor(b, a % b) }
 }
 
-/// The position, in pixels from -1 to 1, below which the share `share` of the filter lies, in one
-/// coordinate: the inverse of `(1 + erf(x / 0.8) / erf(1 / 0.8)) / 2`.
+/// Returns the position, in pixels from -1 to 1, below which the share `share` of the filter lies
+/// in one coordinate: the inverse of `(1 + erf(x / 0.8) / erf(1 / 0.8)) / 2`.
 fn filter_quantile(share: f64) -> f64 {
     let wanted = (2.0 * share - 1.0).abs() * libm::erf(1.0 / 0.8);
-    // Halving the interval: slow, and the same on every machine.
+    // Bisection is slow, but gives the same bits on every machine.
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..f64::MANTISSA_DIGITS {
         let middle = f64::midpoint(low, high);
@@ -268,7 +277,8 @@ mod tests {
         );
     }
 
-    /// Catches a search that is content with less: the best squared distances, found by trying all.
+    /// Catches a search that stops at a smaller distance. The best squared distances were found by
+    /// trying all generators.
     #[test]
     fn the_generator_keeps_points_apart() {
         for (count, apart) in

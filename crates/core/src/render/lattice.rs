@@ -1,34 +1,36 @@
-//! The filter over a lattice whose points neighbouring pixels share: each point's colour goes into
-//! every pixel that needs it, in the order in which a pixel alone would add it up.
+//! The filter over a lattice that neighbouring pixels share.
+//!
+//! Each point's colour goes into every pixel that needs it, in the order in which a pixel alone
+//! would sum it.
 
 use crate::render::samples::Colors;
 use crate::simd::lane::Scalar;
 use rayweave_contract::{Rgb, Tile};
 
-/// The rows of a lattice on their way into the pixels of a tile.
+/// The rows of a lattice, summed into the pixels of a tile.
 ///
-/// The filter is separable. Along each row of the lattice the colours are added up for each column
-/// of pixels; these sums then serve every row of pixels that the row touches, three at the most.
+/// The filter is separable. The colours of a lattice row are first summed for each column of
+/// pixels. These sums then serve every row of pixels that the lattice row touches, at most three.
 #[derive(Debug)]
 pub(crate) struct LatticeSums<'a, S> {
-    /// Of the `2 s + 1` samples across a pixel.
+    /// The weights of the `2 s + 1` samples across a pixel.
     weights: &'a [S],
     density: usize,
-    /// Of the tile, in pixels.
+    /// The width of the tile, in pixels.
     width: usize,
-    /// Colours in rows of the lattice; in each row those `s` steps apart are neighbours, as the
-    /// sums need them.
+    /// The colours of a strip of lattice rows, one list a channel. Within a row, points that are
+    /// `s` steps apart lie next to each other, because the sums read them in this order.
     strip: [Vec<S>; 3],
-    /// Where in the strip each colour goes, in the order in which they come.
+    /// The index in the strip of each expected colour, in the order in which they come.
     slots: Vec<u32>,
-    /// Of one row of the lattice, for each column of pixels.
+    /// The sums of one lattice row, for each column of pixels.
     row: [Vec<S>; 3],
-    /// Of the rows of pixels that are not complete yet: row `y` is in `y % 3`.
+    /// The sums of the rows of pixels that are not complete yet. Row `y` is at index `y % 3`.
     pixels: [[Vec<S>; 3]; 3],
 }
 
 impl<'a, S: Scalar> LatticeSums<'a, S> {
-    /// For a tile of `width` pixels, with `density` steps a pixel.
+    /// Makes the sums of a tile of `width` pixels, with `density` lattice steps a pixel.
     pub(crate) fn new(weights: &'a [S], density: usize, width: usize) -> Self {
         let channels = |count: usize| [(); 3].map(|()| vec![S::literal(0.0); count]);
         Self {
@@ -42,32 +44,31 @@ impl<'a, S: Scalar> LatticeSums<'a, S> {
         }
     }
 
-    /// Where the colour of a lattice point is kept.
+    /// Returns the index in the strip of a lattice point.
     #[inline(always)]
     fn slot(&self, column: usize, row: usize) -> usize {
         (row * self.density + column % self.density) * (self.width + 2) + column / self.density
     }
 
-    /// Makes ready for strips of `rows` rows: the places of their points are
-    /// [expected](Self::expect) next. Colours of the last strip stay until they are overwritten.
+    /// Begins strips of `rows` rows, whose points are [expected](Self::expect) next. The colours of
+    /// the last strip stay until they are overwritten.
     pub(crate) fn start_strip(&mut self, rows: usize) {
         self.slots.clear();
         let size = rows * self.density * (self.width + 2);
         self.strip.iter_mut().for_each(|channel| channel.resize(size, S::literal(0.0)));
     }
 
-    /// The column and row, within the strip, of the next point in the order in which colours will
-    /// come.
+    /// Adds the point at a column and row of the strip to the expected points.
     pub(crate) fn expect(&mut self, column: usize, row: usize) {
         self.slots.push(self.slot(column, row) as u32);
     }
 
-    /// Takes over the colours of the expected points, in their order; what follows them is of lanes
-    /// without a point.
+    /// Stores the colours of the expected points, in their order. Further colours come from unused
+    /// lanes, and are ignored.
     pub(crate) fn fill(&mut self, colors: &Colors<S>) {
         debug_assert!(colors.channels[0].len() >= self.slots.len(), "a point without a colour");
         let [red, green, blue] = &mut self.strip;
-        // Of one length, so that a slot is checked once.
+        // Slices of one length need one bounds check for a slot.
         let (green, blue) = (&mut green[..red.len()], &mut blue[..red.len()]);
         let [reds, greens, blues] = &colors.channels;
         for (((&slot, &r), &g), &b) in self.slots.iter().zip(reds).zip(greens).zip(blues) {
@@ -76,17 +77,19 @@ impl<'a, S: Scalar> LatticeSums<'a, S> {
         }
     }
 
-    /// Of one channel and a row of the strip, the colours of the points `dx` steps right of each
-    /// pixel centre, from that left of the tile to that right of it: of the latter only with none,
-    /// the lattice ends there. `dx` is below the density.
+    /// Returns one channel of the points `dx` steps to the right of each pixel centre, in a row of
+    /// the strip.
+    ///
+    /// The centres reach from the one left of the tile to the one right of it, where the lattice
+    /// ends: there only `dx` = 0 is a point. `dx` has to be below the density.
     #[inline(always)]
     pub(crate) fn points_mut(&mut self, channel: usize, dx: usize, row: usize) -> &mut [S] {
         let first = self.slot(dx, row);
         &mut self.strip[channel][first..first + self.width + 2]
     }
 
-    /// Adds the strip's row `row`, which is row `lattice_row` of the tile's lattice, to the rows of
-    /// pixels that it touches, and writes the one that it completes.
+    /// Adds row `row` of the strip, which is row `lattice_row` of the tile's lattice, to the rows
+    /// of pixels that it touches, and writes the row of pixels that it completes.
     pub(crate) fn add_row(&mut self, row: usize, lattice_row: usize, tile: &mut Tile<'_>) {
         for channel in 0..3 {
             self.row[channel].fill(S::literal(0.0));

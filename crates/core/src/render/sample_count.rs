@@ -1,22 +1,23 @@
-//! How many samples a rectangle of pixels takes, counted without tracing any.
+//! The number of primary rays of a tile, computed without tracing any.
 
 use crate::scene::RenderSettings;
 
-/// The primary rays that the tracer follows for a tile of `width` x `height` pixels.
+/// Returns the number of primary rays that the tracer follows for a tile of `width` x `height`
+/// pixels.
 ///
-/// On a lattice of density `s` a tile that shares its samples takes
-/// `(s (width + 1) + 1) (s (height + 1) + 1)` of them: `s` steps a pixel, and half a pixel more on
-/// each side, because the filter reaches into the neighbours. Each tile traces for itself what it
-/// has in common with its neighbours, so smaller tiles need more rays: the least is a single tile, the
-/// most a tile for each pixel, which is as if nothing were shared.
+/// On a lattice of density `s`, a tile that shares its samples takes `(s (width + 1) + 1) (s
+/// (height + 1) + 1)` rays: `s` steps a pixel, and half a pixel more on each side, because the
+/// filter reaches into the neighbours. Each tile traces the points on its border for itself, so
+/// smaller tiles need more rays. The fewest come from one tile for the whole image, the most from
+/// one tile for each pixel, as if nothing were shared.
 ///
-/// Without sharing, and where no two pixels have a sample in common (one ray a pixel, or [by
-/// importance](crate::Sampling::Importance)), it is [`RenderSettings::rays_per_pixel`] for each
-/// pixel.
+/// Without sharing, it is [`RenderSettings::rays_per_pixel`] for each pixel. So it is where no two
+/// pixels have a sample in common: with one ray a pixel, or with [importance
+/// sampling](crate::Sampling::Importance).
 ///
-/// `None` for an [adaptive](RenderSettings::adaptive) lattice: how many of its points are traced
-/// depends on what is seen. Reflected rays and those to the lights come on top; their number
-/// depends on that always.
+/// Returns `None` for an [adaptive](RenderSettings::adaptive) lattice, where the number depends on
+/// the scene. Reflected rays and shadow rays are not counted, because their number always depends
+/// on the scene.
 #[must_use]
 pub fn primary_rays(
     width: u32,
@@ -27,13 +28,14 @@ pub fn primary_rays(
     if !settings.has_lattice() || (!share_samples && !settings.adaptive) {
         return Some(u64::from(width) * u64::from(height) * u64::from(settings.rays_per_pixel()));
     }
-    // Of no pixels there is nothing that reaches beyond them.
+    // A tile without pixels has no lattice, not even beyond its border.
     let points =
         |pixels| if pixels == 0 { 0 } else { lattice_points(pixels, settings.antialiasing) };
     (!settings.adaptive).then(|| points(width) * points(height))
 }
 
-/// The lattice points along `pixels` pixels, 1 or more, with `density` steps each.
+/// Returns the number of lattice points along `pixels` pixels, 1 or more, with `density` steps
+/// each.
 pub(crate) fn lattice_points(pixels: u32, density: u32) -> u64 {
     u64::from(density) * (u64::from(pixels) + 1) + 1
 }
@@ -49,7 +51,7 @@ mod tests {
         RenderSettings { antialiasing, sampling, ..RenderSettings::default() }
     }
 
-    /// Catches a step or an edge too many: the positions of all pixels' samples, each position once.
+    /// Catches a step or an edge too many: all pixels' samples, each position once.
     #[test]
     fn a_shared_tile_takes_each_position_of_its_pixels_samples_once() {
         for density in [1, 2, 3, 5, 32] {
@@ -60,7 +62,7 @@ mod tests {
             for (width, height) in [(1, 1), (1, 4), (3, 1), (5, 3)] {
                 let mut positions = BTreeSet::new();
                 for (x, y) in (0..width).flat_map(|x| (0..height).map(move |y| (x, y))) {
-                    // Whole numbers of half steps, of which a pixel has `2 s`.
+                    // Whole numbers of half lattice steps, `2 s` of them a pixel.
                     let centre = |pixel: u32| i64::from(2 * density * pixel);
                     positions.extend(
                         samples.iter().map(|&(a, b)| (centre(x) + a as i64, centre(y) + b as i64)),
@@ -88,9 +90,9 @@ mod tests {
         }
     }
 
-    /// Catches a product that does not fit: the largest picture, at the highest density.
+    /// Catches an overflow: the largest image at the highest density.
     #[test]
-    fn the_largest_picture_can_be_counted() {
+    fn the_largest_image_can_be_counted() {
         let settings = settings(32, Sampling::Lattice);
         assert_eq!(primary_rays(65535, 65535, &settings, true), Some(2_097_153 * 2_097_153));
         assert_eq!(primary_rays(65535, 65535, &settings, false), Some(65535 * 65535 * 4225));

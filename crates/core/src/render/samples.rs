@@ -1,4 +1,4 @@
-//! Lists of samples: where they lie, and what colour each has.
+//! Lists of samples: their positions, and their colours.
 
 use crate::simd::lane::{Lane, Scalar};
 use crate::simd::vector::Vector;
@@ -6,8 +6,8 @@ use crate::trace::Traced;
 use std::iter::repeat_n;
 use std::ops::Range;
 
-/// Positions, in half steps of the filter's: from the middle of the picture or, of a filter's samples,
-/// from the centre of a pixel.
+/// Positions of samples, in half lattice steps: from the middle of the image or, for the samples of
+/// a filter, from the centre of a pixel.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SamplePositions<S> {
     xs: Vec<S>,
@@ -29,11 +29,11 @@ impl<S: Scalar> SamplePositions<S> {
         self.ys.push(y);
     }
 
-    /// Adds, for each pixel's centre (one of `xs`, `y`) in turn, the positions of all of its
-    /// `samples` in their order.
+    /// Adds the positions of all `samples` around each pixel centre in turn. The centres are (one
+    /// of `xs`, `y`).
     #[inline(always)]
     pub(crate) fn push_around(&mut self, xs: &[S], y: S, samples: &Self) {
-        // With one sample a pixel the general loop is a noticeable share of a rendering.
+        // With one sample a pixel, the general loop would be a noticeable share of the rendering.
         if let ([dx], [dy]) = (&*samples.xs, &*samples.ys) {
             self.xs.extend(xs.iter().map(|&x| x + *dx));
             self.ys.extend(repeat_n(y + *dy, xs.len()));
@@ -45,8 +45,8 @@ impl<S: Scalar> SamplePositions<S> {
         }
     }
 
-    /// The positions from number `first` on: x and y. Lanes beyond the last repeat some of
-    /// them.
+    /// Returns x and y of the positions from index `first` on. Lanes beyond the last position
+    /// repeat some of them.
     #[inline(always)]
     pub(crate) fn load<L: Lane<Scalar = S>>(&self, first: usize) -> (L, L) {
         if first + L::LANES <= self.len() {
@@ -58,22 +58,22 @@ impl<S: Scalar> SamplePositions<S> {
     }
 }
 
-/// So many steps of the lattice, as a distance between positions: exactly.
+/// Returns the distance between positions that are `steps` lattice steps apart. It is exact.
 #[inline(always)]
 pub(crate) fn lattice_distance<S: Scalar>(steps: i64) -> S {
     S::from_f64(2.0 * steps as f64)
 }
 
-/// The colours of samples: red, green and blue each in a list of its own.
+/// The colours of samples, one list a channel: red, green and blue.
 #[derive(Debug, Default)]
 pub(crate) struct Colors<S> {
     pub(crate) channels: [Vec<S>; 3],
-    /// What each saw, see [`Traced`]; none if nobody asks.
+    /// The path hash of each sample, see [`Traced`]. Empty unless adaptive sampling needs them.
     pub(crate) path_hashes: Vec<u32>,
 }
 
 impl<S: Scalar> Colors<S> {
-    /// Room for so many; for their path hashes too if somebody asks for them.
+    /// Makes room for `count` samples, and for their path hashes if `path_hashes` is set.
     pub(crate) fn resize(&mut self, count: usize, path_hashes: bool) {
         for channel in &mut self.channels {
             channel.resize(count, S::literal(0.0));
@@ -81,13 +81,14 @@ impl<S: Scalar> Colors<S> {
         self.path_hashes.resize(if path_hashes { count } else { 0 }, 0);
     }
 
-    /// The colours of these samples.
+    /// Returns the colours of these samples.
     #[inline(always)]
     pub(crate) fn range(&self, samples: Range<usize>) -> impl Iterator<Item = Vector<S>> {
         let [red, green, blue] = self.channels.each_ref().map(|channel| &channel[samples.clone()]);
         red.iter().zip(green).zip(blue).map(|((&red, &green), &blue)| Vector::new(red, green, blue))
     }
 
+    /// Stores the colours and path hashes of a packet from index `first` on.
     #[inline(always)]
     pub(crate) fn store<L: Lane<Scalar = S>>(
         &mut self,

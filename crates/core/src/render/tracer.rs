@@ -1,4 +1,4 @@
-//! The tracer as [`Work`]: any tile of a scene's picture.
+//! The tracer as [`Work`]: fills any tile of a scene's image.
 
 use crate::camera::Camera;
 use crate::execution::{Execution, Lanes};
@@ -16,8 +16,10 @@ use std::fmt;
 use std::marker::PhantomData;
 use std::ops::Range;
 
-/// The work of rendering `scene` into a picture of `width` x `height` pixels, up to the 65,535 of a
-/// scene file each: positions in larger ones are not exact.
+/// Returns the work of rendering `scene` into an image of `width` x `height` pixels.
+///
+/// Either side may have up to 65,535 pixels, the limit of a scene file; in larger images the
+/// positions of samples are not exact.
 ///
 /// # Errors
 ///
@@ -29,26 +31,26 @@ pub fn tracer(
     execution: Execution,
 ) -> Result<Box<dyn Work + Send>, SceneError> {
     scene.check()?;
-    Ok(Picture { scene, width, height, execution }.tracer())
+    Ok(TracerArguments { scene, width, height, execution }.tracer())
 }
 
-/// What a tracer is compiled for.
-struct Picture<'a> {
+/// The arguments of a tracer, for which it is compiled in several arithmetics.
+struct TracerArguments<'a> {
     scene: &'a Scene,
     width: u32,
     height: u32,
     execution: Execution,
 }
 
-impl Picture<'_> {
-    /// Not generic, so that all that is compiled for it is compiled in this crate, and in none that
-    /// uses it.
+impl TracerArguments<'_> {
+    /// Makes the tracer. It is not generic, so that the kernels are compiled in this crate and not
+    /// again in each crate that uses it.
     fn tracer(self) -> Box<dyn Work + Send> {
         select(self.scene.render.arithmetic, self)
     }
 }
 
-impl Compiled for Picture<'_> {
+impl Compiled for TracerArguments<'_> {
     type Output = Box<dyn Work + Send>;
 
     fn compiled<S: Scalar, F: Family>(self) -> Self::Output {
@@ -73,8 +75,8 @@ struct Tracer<L: Lane, F> {
 }
 
 impl<L: Lane, F: Family> Tracer<L, F> {
-    fn new(picture: &Picture) -> Self {
-        let &Picture { scene, width, height, execution } = picture;
+    fn new(arguments: &TracerArguments) -> Self {
+        let &TracerArguments { scene, width, height, execution } = arguments;
         let filter = Filter::new(&scene.render);
         Self {
             world: World::new(scene, Some(scene.camera.position), execution.acceleration),
@@ -88,8 +90,8 @@ impl<L: Lane, F: Family> Tracer<L, F> {
         }
     }
 
-    /// The colour at each position, counted from `(x, y)`, in packets of neighbours in the
-    /// list.
+    /// Traces the rays through these positions, relative to `(x, y)`. Neighbours in the list share
+    /// packets.
     fn trace(
         &self,
         positions: &SamplePositions<L::Scalar>,
@@ -105,22 +107,25 @@ impl<L: Lane, F: Family> Tracer<L, F> {
         }
     }
 
-    /// The centre of pixel `x` along an axis of `extent` pixels, in half steps of the filter's from
-    /// the middle of the picture: a whole number below 2^23. So positions on the lattice are exact in
-    /// `f32`; others are rounded there, to 1/512 of a pixel in the widest picture and 1/65536 in
-    /// one of 500.
+    /// Returns the centre of pixel `x` along an axis of `extent` pixels, in half lattice steps from
+    /// the middle of the image.
+    ///
+    /// It is a whole number below 2^23, so positions on the lattice are exact in `f32`. Other
+    /// positions are rounded there, to 1/512 of a pixel in the widest image and to 1/65536 of a
+    /// pixel in an image of 500 pixels.
     fn centre(&self, x: u32, extent: u32) -> L::Scalar {
         let half_pixels = 2 * i64::from(x) + 1 - i64::from(extent);
         Scalar::from_f64((i64::from(self.filter.density()) * half_pixels) as f64)
     }
 
-    /// The position of the first lattice point of a tile, a pixel before the centre of its first one.
+    /// Returns the position of the first lattice point of a tile, one pixel before the centre of
+    /// the tile's first pixel.
     fn corner(&self, rect: Rect) -> (L::Scalar, L::Scalar) {
         let back = lattice_distance(-i64::from(self.filter.density()));
         (self.centre(rect.x, self.width) + back, self.centre(rect.y, self.height) + back)
     }
 
-    /// Every pixel with samples of its own.
+    /// Renders every pixel with samples of its own.
     fn render_alone(&self, tile: &mut Tile<'_>) {
         let rect = tile.rect();
         let xs: Vec<L::Scalar> =
@@ -128,14 +133,14 @@ impl<L: Lane, F: Family> Tracer<L, F> {
         let ys: Vec<L::Scalar> =
             (0..rect.height).map(|y| self.centre(rect.y + y, self.height)).collect();
         let samples = self.filter.positions();
-        // The widest block of which a row's samples fit into a batch; a pixel if not even these do.
+        // The widest block such that a row of it fits into a batch; one pixel if no block does.
         let side = (BATCH / samples.len()).clamp(1, BLOCK);
         let runs_a_batch = (BATCH / (side * samples.len())).max(1);
         let (mut runs, mut positions, mut colors) =
             (Vec::new(), SamplePositions::default(), Colors::default());
         for top in (0..ys.len()).step_by(side) {
-            // Of a narrow tile the strips, and so the packets, are not full: to put several
-            // together costs all others more.
+            // The strips of a narrow tile do not fill their packets. Combining several strips would
+            // cost all other tiles more.
             runs.clear();
             let strip = top..ys.len().min(top + side);
             for_each_run(xs.len(), strip, side, |columns, row| runs.push((columns, row)));
@@ -155,7 +160,7 @@ impl<L: Lane, F: Family> Tracer<L, F> {
         }
     }
 
-    /// The lattice over the tile and around it, each point traced once.
+    /// Traces each point of the lattice over the tile and around it once.
     fn render_shared(&self, tile: &mut Tile<'_>, weights: &[L::Scalar]) {
         let (rect, density) = (tile.rect(), self.filter.density());
         let [columns, rows] =
@@ -165,7 +170,8 @@ impl<L: Lane, F: Family> Tracer<L, F> {
         let mut sums = LatticeSums::new(weights, density as usize, rect.width as usize);
         let mut height = 0;
         for first_row in (0..rows).step_by(BLOCK) {
-            // All strips of a tile have the same positions but the last, which may be lower.
+            // All strips of a tile have the same positions, except the last one, which may be
+            // lower.
             let strip = BLOCK.min(rows - first_row);
             if strip != height {
                 height = strip;
@@ -187,7 +193,8 @@ impl<L: Lane, F: Family> Tracer<L, F> {
         }
     }
 
-    /// The lattice over the tile and around it; points that need no ray are interpolated.
+    /// Traces the points of the lattice over the tile and around it where the image changes, and
+    /// interpolates the others.
     fn render_adaptive(&self, tile: &mut Tile<'_>, weights: &[L::Scalar]) {
         let (rect, density) = (tile.rect(), self.filter.density());
         let (left, top) = self.corner(rect);
@@ -195,9 +202,9 @@ impl<L: Lane, F: Family> Tracer<L, F> {
         let mut sums = LatticeSums::new(weights, density as usize, rect.width as usize);
         let mut bands = Bands::new(density as usize, rect.width as usize);
         for centres in 0..rect.height + 2 {
-            // The band ends at lattice row `last`; of the first one there is this row only.
+            // The band ends at lattice row `last`. The first band is only this row.
             let last = i64::from(centres * density);
-            bands.position_centres(&mut positions);
+            bands.centre_positions(&mut positions);
             self.trace(&positions, (left, top + lattice_distance(last)), &mut colors);
             bands.take_centres(&colors);
             bands.interpolate(&mut sums, &mut positions);
@@ -211,14 +218,15 @@ impl<L: Lane, F: Family> Tracer<L, F> {
     }
 }
 
-/// Samples that are traced together: enough to fill packets, few enough to stay in the cache.
+/// The number of samples that are traced together: enough to fill packets, few enough to stay in
+/// the cache.
 const BATCH: usize = 1024;
 
-/// The largest side of a block of neighbours: that of a packet of 16.
+/// The largest side of a block of neighbours: 4 x 4 pixels fill a packet of 16.
 const BLOCK: usize = 4;
 
-/// Calls `show` with the columns and the row of each row of each block of a strip: block by block,
-/// `side` columns wide, so that those that follow each other are neighbours.
+/// Calls `show` with the columns and the row of each row of each block of a strip. The blocks are
+/// `side` columns wide and follow each other, so that consecutive samples are neighbours.
 #[inline(always)]
 fn for_each_run(
     width: usize,

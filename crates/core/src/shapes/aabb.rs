@@ -4,7 +4,7 @@ use crate::simd::lane::Scalar;
 use crate::simd::vector::Vector;
 
 /// The box around a primitive: the lower x, y and z, the upper ones, and two numbers that make it
-/// eight.
+/// eight, for an index without a bounds check.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Aabb<S>([S; 8]);
 
@@ -22,8 +22,8 @@ impl<S: Scalar> Aabb<S> {
         Vector::new(self.0[3], self.0[4], self.0[5])
     }
 
-    /// Returns the coordinate of a side: the lower x, y and z are 0, 1 and 2, the upper ones 3, 4
-    /// and 5.
+    /// Returns the coordinate of a side. The lower x, y and z have the numbers 0, 1 and 2, the
+    /// upper ones 3, 4 and 5.
     #[inline(always)]
     pub(crate) fn side(&self, number: usize) -> S {
         // The remainder needs no bounds check.

@@ -7,26 +7,27 @@ use crate::scene;
 use crate::simd::lane::{Lane, Mask, Scalar};
 use crate::simd::vector::Vector;
 
+/// A cylinder in the precision of the image.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cylinder<S> {
     /// The lower end of the axis.
     pub(crate) bottom: Vector<S>,
-    /// The y of its upper end.
+    /// The y of the upper end.
     pub(crate) top: S,
     pub(crate) radius: S,
     radius_squared: S,
 }
 
-/// What all cylinders ask of a ray.
+/// The part of the formulas that depends on the ray alone.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RayPrecomputation<L> {
-    /// Of the direction's part across the axis. Infinite for a ray along the axis, which then
-    /// gives NaN and so a miss.
+    /// One over the squared length of the direction's part across the axis. It is infinite for a
+    /// ray along the axis, which then gets NaN and so misses.
     inverse_square: L,
 }
 
 impl<L: Lane> RayPrecomputation<L> {
-    /// Where there are no cylinders.
+    /// Returns a placeholder, for scenes without cylinders.
     #[inline(always)]
     pub(crate) fn none() -> Self {
         Self { inverse_square: L::literal(0.0) }
@@ -50,15 +51,16 @@ impl<S: Scalar> Cylinder<S> {
         }
     }
 
+    /// Returns the box around it.
     pub(crate) fn bounds(&self) -> Aabb<S> {
         let across = Vector::new(self.radius, S::literal(0.0), self.radius);
         let top = Vector { y: self.top, ..self.bottom };
         Aabb::new(self.bottom - across, top + across)
     }
 
-    /// The smaller of the [roots](quadric::roots) above 0 that are on the wall: both are tried,
-    /// because the far wall is seen through the open end. The discriminant's error is the sphere's,
-    /// in x and z.
+    /// Returns the smaller of the [roots](quadric::roots) above 0 that are on the wall. Both roots
+    /// are tried, because the far wall is visible through the open end. The discriminant has the
+    /// error of a sphere's, in x and z.
     #[inline(always)]
     pub(crate) fn intersect<L: Lane<Scalar = S>>(
         &self,
@@ -80,13 +82,13 @@ impl<S: Scalar> Cylinder<S> {
         }
         let closest = closest + (ax * dx + az * dz) * precomputed.inverse_square;
         let power = (cx * cx + cz * cz) - radius_squared;
-        // Behind a ray that starts outside: both roots are below 0.
+        // The cylinder is behind a ray that starts outside of it: both roots are below 0.
         let crossed = crossed & !(closest.lt(zero) & zero.lt(power));
         if !crossed.any() {
             return miss();
         }
         let (near, far) = quadric::roots(closest, discriminant, power, precomputed.inverse_square);
-        // Differences first, as everywhere.
+        // Differences of coordinates come first, so that a scene far from the origin loses nothing.
         let (to_bottom, to_top) =
             (L::splat(self.bottom.y) - ray.origin.y, L::splat(self.top) - ray.origin.y);
         let on_wall = |t: L| {
@@ -97,6 +99,7 @@ impl<S: Scalar> Cylinder<S> {
         L::select(crossed, t, miss())
     }
 
+    /// Returns the point of the cylinder that is closest to `near`.
     #[inline(always)]
     pub(crate) fn surface<L: Lane<Scalar = S>>(&self, near: Vector<L>) -> SurfacePoint<L> {
         let zero = L::literal(0.0);

@@ -10,15 +10,15 @@ use crate::simd::vector::Vector;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Plane<S> {
     pub(crate) point: Vector<S>,
-    /// As the scene gives it, but for a power of two: made unit it would lose its last digits, and
-    /// a ray that starts in the plane would hit it.
+    /// The normal of the scene, scaled by a power of two. Made unit it would lose its last digits,
+    /// and a ray that starts in the plane would hit it.
     pub(crate) normal: Vector<S>,
     unit_normal: Vector<S>,
-    /// If the normal has but one component.
+    /// Set if the normal is parallel to an axis.
     across: Option<Across<S>>,
 }
 
-/// The axis of the normal, and the normal and the point along it.
+/// The axis of the normal, and the normal's and the point's component along it.
 #[derive(Clone, Copy, Debug)]
 struct Across<S> {
     axis: usize,
@@ -41,8 +41,9 @@ impl<S: Scalar> Plane<S> {
         Self { point, normal, unit_normal: Vector::rounded(scene::unit(plane.normal)), across }
     }
 
-    /// `t = n . (point - origin) / n . d`: the difference first, so that a scene far from the
-    /// origin of coordinates loses nothing. A parallel ray gives an infinity or NaN: a miss.
+    /// Returns `t = n . (point - origin) / n . d`. The difference comes first, so that a scene far
+    /// from the origin of coordinates loses nothing. A parallel ray gives an infinity or NaN, which
+    /// is a miss.
     ///
     /// Relative error of `t`, counting roundings (Higham, Accuracy and Stability of Numerical
     /// Algorithms, 2002, 3.1): at most `4u sum |n_i (point_i - o_i)| / |n . (point - o)| + 3u sum
@@ -68,6 +69,7 @@ impl<S: Scalar> Plane<S> {
         L::select(L::literal(0.0).lt(t), t, miss())
     }
 
+    /// Returns the point of the plane that is closest to `near`.
     #[inline(always)]
     pub(crate) fn surface<L: Lane<Scalar = S>>(&self, near: Vector<L>) -> SurfacePoint<L> {
         let (anchor, normal) = (Vector::splat(self.point), Vector::splat(self.unit_normal));

@@ -2,18 +2,19 @@
 
 use crate::simd::lane::Lane;
 
-/// The roots `near <= far`, valid where `discriminant >= 0`.
+/// Returns the roots `near <= far`, which are valid where `discriminant >= 0`.
 ///
-/// `closest` is the `t` of the point of the ray nearest to the centre; `discriminant` is the
-/// squared radius less that point's squared distance (Hearn and Baker; Haines, Gunther,
-/// Akenine-Moller, Ray Tracing Gems, 2019, ch. 7), which does not cancel for far and grazing
-/// spheres as `b^2 - 4ac` does; `power` is the origin's squared distance from the centre less the
-/// squared radius. The root of greater magnitude is a sum without cancellation. So is the other one
-/// as a difference of numbers that are far apart; else it follows from the product of the roots
+/// `closest` is the `t` of the ray's point closest to the centre. `discriminant` is the squared
+/// radius less that point's squared distance (Hearn and Baker; Haines, Gunther, Akenine-Moller, Ray
+/// Tracing Gems, 2019, ch. 7). For far and grazing spheres it does not cancel, as `b^2 - 4ac` does.
+/// `power` is the origin's squared distance from the centre less the squared radius.
+///
+/// The root of greater magnitude is a sum without cancellation. The other one is a difference,
+/// which is accurate if its terms are far apart. Else it follows from the product of the roots
 /// (Press et al., Numerical Recipes, 5.6), which takes more roundings.
 ///
-/// Error of a root: measured, at most 1.3 times the spacing at `t` times its condition number, over
-/// 1,500 cases of each of the families in `docs/numerics.md`.
+/// The measured error of a root is at most 1.3 times the spacing at `t` times its condition number,
+/// over 1,500 cases of each of the families in `docs/numerics.md`.
 #[inline(always)]
 pub(crate) fn roots<L: Lane>(closest: L, discriminant: L, power: L, inverse_square: L) -> (L, L) {
     let half_chord = (discriminant * inverse_square).sqrt();

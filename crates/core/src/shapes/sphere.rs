@@ -7,6 +7,7 @@ use crate::scene;
 use crate::simd::lane::{Lane, Mask, Scalar};
 use crate::simd::vector::Vector;
 
+/// A sphere in the precision of the image.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sphere<S> {
     pub(crate) center: Vector<S>,
@@ -14,14 +15,14 @@ pub(crate) struct Sphere<S> {
     radius_squared: S,
 }
 
-/// What all spheres ask of a ray.
+/// The part of the formulas that depends on the ray alone.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RayPrecomputation<L> {
     inverse_square: L,
 }
 
 impl<L: Lane> RayPrecomputation<L> {
-    /// Where there are no spheres.
+    /// Returns a placeholder, for scenes without spheres.
     #[inline(always)]
     pub(crate) fn none() -> Self {
         Self { inverse_square: L::literal(0.0) }
@@ -39,16 +40,17 @@ impl<S: Scalar> Sphere<S> {
         Self { center: Vector::rounded(sphere.center), radius, radius_squared: radius * radius }
     }
 
+    /// Returns the box around it.
     pub(crate) fn bounds(&self) -> Aabb<S> {
         let reach = Vector::new(self.radius, self.radius, self.radius);
         Aabb::new(self.center - reach, self.center + reach)
     }
 
-    /// The smaller of the [roots](quadric::roots) above 0.
+    /// Returns the smaller of the [roots](quadric::roots) above 0.
     ///
-    /// The point nearest to the centre `c` of a ray from 0 is found to about `8u |c|`, and so the
+    /// For a ray from 0, the point closest to the centre `c` is found to about `8u |c|`, and so the
     /// discriminant to about `16u |c| / r` of `r^2`. In `b^2 - 4ac` it would be `8u (|c| / r)^2`:
-    /// of a sphere 4,000 radii away nothing is left of it in `f32`.
+    /// for a sphere 4,000 radii away no digit would be left in `f32`.
     #[inline(always)]
     pub(crate) fn intersect<L: Lane<Scalar = S>>(
         &self,
@@ -60,17 +62,17 @@ impl<S: Scalar> Sphere<S> {
         let radius_squared = L::splat(self.radius_squared);
         let to_center = Vector::splat(self.center) - ray.origin;
         let closest = to_center.dot(ray.direction) * precomputed.inverse_square;
-        let aside = to_center - ray.direction * closest;
-        let discriminant = radius_squared - aside.dot(aside);
+        let perpendicular = to_center - ray.direction * closest;
+        let discriminant = radius_squared - perpendicular.dot(perpendicular);
         let crossed = wanted & zero.le(discriminant);
         if !crossed.any() {
             return miss();
         }
-        // What is left of the point along the ray is the error of `closest`: it is told at little
-        // cost.
-        let closest = closest + aside.dot(ray.direction) * precomputed.inverse_square;
+        // The remaining component along the ray is the error of `closest`, which is corrected at
+        // little cost.
+        let closest = closest + perpendicular.dot(ray.direction) * precomputed.inverse_square;
         let power = to_center.dot(to_center) - radius_squared;
-        // Behind a ray that starts outside: both roots are below 0.
+        // The sphere is behind a ray that starts outside of it: both roots are below 0.
         let crossed = crossed & !(closest.lt(zero) & zero.lt(power));
         if !crossed.any() {
             return miss();
@@ -80,6 +82,7 @@ impl<S: Scalar> Sphere<S> {
         L::select(crossed & zero.lt(t), t, miss())
     }
 
+    /// Returns the point of the sphere that is closest to `near`.
     #[inline(always)]
     pub(crate) fn surface<L: Lane<Scalar = S>>(&self, near: Vector<L>) -> SurfacePoint<L> {
         let (center, radius) = (Vector::splat(self.center), L::splat(self.radius));

@@ -1,4 +1,4 @@
-//! The triangle, its edges included, without gaps to its neighbours.
+//! The triangle: its edges are included, and neighbours meet without gaps.
 
 use super::aabb::Aabb;
 use super::{SurfacePoint, offset_bound};
@@ -8,19 +8,20 @@ use crate::simd::lane::{Lane, Mask, Scalar, sign_of_difference};
 use crate::simd::vector::Vector;
 use glam::DVec3;
 
+/// A triangle in the precision of the image.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Triangle<S> {
     pub(crate) vertices: [Vector<S>; 3],
-    /// Of a length near 1, but not made unit, which would cost digits; or zero when rounding took
-    /// the triangle's area: then no ray hits it.
+    /// The normal, of a length near 1: making it unit would cost digits. Zero if rounding took the
+    /// triangle's area; then no ray hits it.
     pub(crate) normal: Vector<S>,
     unit_normal: Vector<S>,
     /// The largest magnitude of each coordinate.
     reach: Vector<S>,
 }
 
-/// What all triangles ask of rays that are longest along one axis: the shear that turns them into
-/// the axis along which they are longest. Triangles are then tested in the two other coordinates.
+/// The part of the formulas that depends on the ray alone, for rays with one dominant axis: the
+/// shear that turns them into this axis. Triangles are then tested in the two other coordinates.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RayPrecomputation<L> {
     /// The axes in the order in which coordinates are taken.
@@ -33,7 +34,7 @@ pub(crate) struct RayPrecomputation<L> {
 }
 
 impl<L: Lane> RayPrecomputation<L> {
-    /// Where there are no triangles.
+    /// Returns a placeholder, for scenes without triangles.
     #[inline(always)]
     pub(crate) fn none() -> Self {
         let zero = L::literal(0.0);
@@ -47,8 +48,8 @@ impl<L: Lane> RayPrecomputation<L> {
         Self { order, origin: order.map(|axis| origin[axis]), shear: [x / z, y / z], along: z }
     }
 
-    /// Where `v` lies aside of the ray, and how far along the axis. The same rounded point for
-    /// every triangle that shares `v`.
+    /// Returns the position of `v` beside the ray, and along the axis. It is the same rounded point
+    /// for every triangle that shares `v`.
     #[inline(always)]
     fn project(&self, v: Vector<L::Scalar>) -> [L; 3] {
         let coordinates = v.to_array();
@@ -60,7 +61,7 @@ impl<L: Lane> RayPrecomputation<L> {
 
 impl<S: Scalar> Triangle<S> {
     pub(crate) fn new(triangle: &scene::Triangle) -> Self {
-        // The plane of the rounded corners: those of the scene may lie on another.
+        // The plane is that of the rounded corners, because the scene's corners may lie on another.
         let vertices = triangle.vertices.map(Vector::rounded);
         let [a, b, c] = vertices.map(Vector::widened);
         let normal = if scene::parallel(b - a, c - a) {
@@ -78,21 +79,24 @@ impl<S: Scalar> Triangle<S> {
         }
     }
 
+    /// Returns the box around it.
     pub(crate) fn bounds(&self) -> Aabb<S> {
         let [a, b, c] = self.vertices;
         Aabb::new(a.min(b).min(c), a.max(b).max(c))
     }
 
-    /// The edge test of Woop, Benthin and Wald (Watertight Ray/Triangle Intersection, JCGT 2013):
-    /// signs of 2 x 2 determinants of projected corners, which are the same from both sides of a
-    /// shared edge. `t` is that of the plane, differences first, its sums in twice the digits,
-    /// since few rays come that far; where the ray grazes the plane it is mostly noise all the
-    /// same, so it is kept between those of the corners.
+    /// Returns the `t` at which the ray hits the triangle.
+    ///
+    /// The edge test is that of Woop, Benthin and Wald (Watertight Ray/Triangle Intersection, JCGT
+    /// 2013): signs of 2 x 2 determinants of projected corners, which are the same from both sides
+    /// of a shared edge. `t` is that of the plane: differences come first, and the sums have twice
+    /// the digits, since few rays come that far. Where the ray grazes the plane, `t` is mostly
+    /// noise all the same, so it is clamped to the range of the corners.
     ///
     /// The corners are projected to within `3u` of their coordinates, and then every sign is exact.
     /// Relative error of `t` in `f32`, whose corners `f64` turns into a normal without a loss: at
-    /// most `2u sum |n_i (a_i - o_i)| / |n . (a - o)| + u sum |n_i d_i| / |n . d| + 3u`: the
-    /// rounded normal and differences, then two sums and a quotient rounded once.
+    /// most `2u sum |n_i (a_i - o_i)| / |n . (a - o)| + u sum |n_i d_i| / |n . d| + 3u`. These are
+    /// the rounded normal and differences, then two sums and a quotient rounded once.
     #[inline(always)]
     pub(crate) fn intersect<L: Lane<Scalar = S>>(
         &self,
@@ -101,14 +105,14 @@ impl<S: Scalar> Triangle<S> {
         wanted: L::Mask,
     ) -> L {
         let zero = L::literal(0.0);
-        // Written out: a `map` over an array is not always inlined.
+        // Written out, because a `map` over an array is not always inlined.
         let [a, b, c] = self.vertices;
         let (a, b, c) = (precomputed.project(a), precomputed.project(b), precomputed.project(c));
         let edge = |[px, py, _]: [L; 3], [qx, qy, _]: [L; 3]| sign_of_difference(px, qy, py, qx);
         let (u, v, w) = (edge(b, c), edge(c, a), edge(a, b));
         let front = zero.le(u) & zero.le(v) & zero.le(w);
         let back = u.le(zero) & v.le(zero) & w.le(zero);
-        // All three zero: the ray lies in the triangle's plane.
+        // All three are zero if the ray lies in the triangle's plane.
         let inside = wanted & (front | back) & !(front & back);
         if !inside.any() {
             return miss();
@@ -119,10 +123,11 @@ impl<S: Scalar> Triangle<S> {
         let (lowest, highest) = (a[2].min(b[2]).min(c[2]), a[2].max(b[2]).max(c[2]));
         let (from, to) = (lowest / precomputed.along, highest / precomputed.along);
         let t = t.max(from.min(to)).min(from.max(to));
-        // A ray parallel to the plane, or a triangle without area, misses.
+        // A ray parallel to the plane misses, and so does every ray if the triangle has no area.
         L::select(inside & zero.lt(slope.abs()) & zero.lt(t), t, miss())
     }
 
+    /// Returns the point of the triangle that is closest to `near`.
     #[inline(always)]
     pub(crate) fn surface<L: Lane<Scalar = S>>(&self, near: Vector<L>) -> SurfacePoint<L> {
         let normal = Vector::splat(self.unit_normal);

@@ -1,27 +1,27 @@
 //! The number type of the tracer: one number, or several side by side.
 //!
-//! Every formula is written once over [`Lane`]. For `f32` and `f64` a [`Mask`] is a `bool`,
-//! `any` is a plain branch and `select` an `if`: the scalar program. For a vector of numbers the
-//! same text is a packet program, and gives each lane the same bits, because every operation here
-//! is one that IEEE 754 rounds correctly.
+//! Every formula is written once over [`Lane`]. For `f32` and `f64` a [`Mask`] is a `bool`, `any`
+//! is a plain branch and `select` an `if`: the formula is a scalar program. For a vector of numbers
+//! the same text is a packet program. It gives each lane the same bits, because IEEE 754 rounds
+//! every operation here correctly.
 //!
-//! What is missing is missing on purpose: no multiply-add (it rounds once where `*` and `+` round
-//! twice), no `powf`, `exp` or `sin` (whose last bits differ between libraries).
+//! Some operations are missing on purpose: multiply-add, which rounds once where `*` and `+` round
+//! twice, and `powf`, `exp` and `sin`, whose last bits differ between libraries.
 
 use std::fmt::Debug;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-/// One truth value a lane.
+/// One truth value for each lane.
 pub trait Mask:
     Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self>
 {
-    /// Whether it holds in any lane.
+    /// Returns whether it is true in any lane.
     fn any(self) -> bool;
-    /// A bit a lane, the first lane's being the lowest.
+    /// Returns one bit for each lane, the first lane in the lowest bit.
     fn bits(self) -> u32;
 }
 
-/// One number a lane.
+/// One number for each lane.
 pub trait Lane:
     Copy
     + Debug
@@ -35,14 +35,14 @@ pub trait Lane:
     type Scalar: Scalar;
     /// The result of a comparison.
     type Mask: Mask;
-    /// One index a lane: of a primitive, or an exponent.
+    /// One index for each lane: a primitive's number, an exponent or a hash.
     type Index: Copy;
-    /// How many numbers there are.
+    /// The number of lanes.
     const LANES: usize;
 
-    /// The number of each lane.
+    /// Calls `number` for each lane.
     fn from_fn(number: impl FnMut(usize) -> Self::Scalar) -> Self;
-    /// The first `LANES` numbers of `numbers`.
+    /// Loads the first `LANES` numbers of `numbers`.
     ///
     /// # Panics
     ///
@@ -54,39 +54,39 @@ pub trait Lane:
     ///
     /// If there are fewer.
     fn store(self, numbers: &mut [Self::Scalar]);
-    /// True in the first `count` lanes.
+    /// Returns a mask that is true in the first `count` lanes.
     fn first_lanes(count: usize) -> Self::Mask;
 
-    /// The same number in every lane.
+    /// Returns the same number in every lane.
     fn splat(x: Self::Scalar) -> Self;
-    /// The same index in every lane.
+    /// Returns the same index in every lane.
     fn splat_index(index: u32) -> Self::Index;
 
-    /// Square root, correctly rounded; NaN below 0.
+    /// Returns the square root, correctly rounded; NaN below 0.
     fn sqrt(self) -> Self;
-    /// Magnitude.
+    /// Returns the magnitude.
     fn abs(self) -> Self;
-    /// The smaller; `other` if either is NaN.
+    /// Returns the smaller number; `other` if either is NaN.
     fn min(self, other: Self) -> Self;
-    /// The larger; `other` if either is NaN.
+    /// Returns the larger number; `other` if either is NaN.
     fn max(self, other: Self) -> Self;
 
-    /// Whether `self < other`; not so if either is NaN, here and in the following.
+    /// Returns `self < other`: false if either is NaN, as in the other comparisons.
     fn lt(self, other: Self) -> Self::Mask;
-    /// Whether `self <= other`.
+    /// Returns `self <= other`.
     fn le(self, other: Self) -> Self::Mask;
-    /// Whether `self == other`.
+    /// Returns `self == other`.
     fn equals(self, other: Self) -> Self::Mask;
 
-    /// `yes` where the mask holds, `no` elsewhere.
+    /// Returns `yes` where the mask is true, `no` elsewhere.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
-    /// `yes` where the mask holds, `no` elsewhere.
+    /// Returns `yes` where the mask is true, `no` elsewhere.
     fn select_index(mask: Self::Mask, yes: Self::Index, no: Self::Index) -> Self::Index;
-    /// The three numbers in the first lane where the mask holds.
+    /// Returns the three numbers in the first lane where the mask is true.
     fn first(mask: Self::Mask, numbers: [Self; 3]) -> Option<[Self::Scalar; 3]>;
-    /// The index in the first lane where the mask holds.
+    /// Returns the index in the first lane where the mask is true.
     fn first_index(mask: Self::Mask, indices: Self::Index) -> Option<u32>;
-    /// A number that, as good as certainly, only these two in this order give; of 32 bits.
+    /// Returns a hash of 32 bits of a hash and a further number. The order of calls matters.
     fn hash_combine(hash: Self::Index, with: Self::Index) -> Self::Index;
     /// Overwrites the first `LANES` numbers of `numbers`.
     ///
@@ -94,41 +94,42 @@ pub trait Lane:
     ///
     /// If there are fewer.
     fn store_index(index: Self::Index, numbers: &mut [u32]);
-    /// The lanes that hold `index`.
+    /// Returns the lanes that hold `index`.
     fn index_equals(indices: Self::Index, index: u32) -> Self::Mask;
-    /// The lanes that hold an index above `index`.
+    /// Returns the lanes that hold an index above `index`.
     fn index_above(indices: Self::Index, index: u32) -> Self::Mask;
 
-    /// The number of the source text in every lane.
+    /// Returns the number of the source text in every lane.
     #[inline(always)]
     fn literal(x: f64) -> Self {
         Self::splat(Self::Scalar::from_f64(x))
     }
 }
 
-/// A lane of one: the types in which a scene is stored.
+/// A single number: the types in which a scene is stored.
 pub trait Scalar:
     Lane<Scalar = Self, Mask = bool, Index = u32> + Default + Send + Sync + 'static
 {
-    /// As many as fill 256 bits.
+    /// The packet of as many numbers as fill 256 bits.
     type Wide256: Lane<Scalar = Self>;
-    /// As many as fill 512 bits.
+    /// The packet of as many numbers as fill 512 bits.
     type Wide512: Lane<Scalar = Self>;
-    /// Unit roundoff `u`: the largest relative error of one rounded operation.
+    /// The unit roundoff `u`: the largest relative error of one rounded operation.
     const ROUNDOFF: f64;
-    /// `2^s + 1`, where `s` is half of the digits, rounded up: it splits a number into halves.
+    /// The factor `2^s + 1` that splits a number into halves, where `s` is half of the digits,
+    /// rounded up.
     const SPLITTER: f64;
 
-    /// The nearest number of this type.
+    /// Returns the nearest number of this type.
     fn from_f64(x: f64) -> Self;
-    /// The same number.
+    /// Returns the same number.
     fn to_f64(self) -> f64;
-    /// The nearest `f32`, in which pictures are kept.
+    /// Returns the nearest `f32`, in which images are stored.
     fn to_f32(self) -> f32;
 }
 
-/// An odd number near 2^32 over the golden ratio, which spreads what it multiplies (Knuth, The Art
-/// of Computer Programming 3, 1973, 6.4).
+/// An odd number near 2^32 over the golden ratio. Multiplication by it spreads close numbers far
+/// apart (Knuth, The Art of Computer Programming 3, 1973, 6.4).
 pub(crate) const HASH_MULTIPLIER: u32 = 0x9e37_79b1;
 
 impl Mask for bool {
@@ -261,12 +262,12 @@ macro_rules! scalar {
 scalar!(f32, f32x8, f32x16, splitter 4097.0);
 scalar!(f64, f64x4, f64x8, splitter 134217729.0);
 
-/// `a b - c d` with its sign right (and zero only if it is zero), barring under- and overflow.
+/// Returns a number with the sign of `a b - c d`, and zero only if that is zero, barring under- and
+/// overflow.
 ///
-/// The rounded products decide unless they are equal; then their rounding errors do, which the
-/// error-free product of Dekker (1971) finds with the splitting of Veltkamp (1968). It is the
-/// exact decision on zero edges that the watertight test of Woop, Benthin and Wald (2013) takes
-/// from wider arithmetic.
+/// The rounded products decide unless they are equal. Then their rounding errors decide, found by
+/// the error-free product of Dekker (1971) with the splitting of Veltkamp (1968). The watertight
+/// test of Woop, Benthin and Wald (2013) takes this decision on zero edges in wider arithmetic.
 #[inline(always)]
 pub(crate) fn sign_of_difference<L: Lane>(a: L, b: L, c: L, d: L) -> L {
     let (ab, cd) = (a * b, c * d);
@@ -278,14 +279,14 @@ pub(crate) fn sign_of_difference<L: Lane>(a: L, b: L, c: L, d: L) -> L {
     L::select(equal, product_error(a, b, ab) - product_error(c, d, cd), rounded)
 }
 
-/// `a b - product`, exactly, for a `product` that is the rounded one.
+/// Returns `a b - product` exactly, where `product` is the rounded product.
 #[inline(never)]
 pub(crate) fn product_error<L: Lane>(a: L, b: L, product: L) -> L {
     let ((ah, al), (bh, bl)) = (split(a), split(b));
     al * bl - (((product - ah * bh) - al * bh) - ah * bl)
 }
 
-/// `a + b - sum`, exactly, for a `sum` that is the rounded one (Knuth, The Art of Computer
+/// Returns `a + b - sum` exactly, where `sum` is the rounded sum (Knuth, The Art of Computer
 /// Programming 2, 1969).
 #[inline(always)]
 pub(crate) fn sum_error<L: Lane>(a: L, b: L, sum: L) -> L {
@@ -293,7 +294,7 @@ pub(crate) fn sum_error<L: Lane>(a: L, b: L, sum: L) -> L {
     (a - (sum - b_part)) + (b - b_part)
 }
 
-/// The upper and the lower half of the digits of `x`.
+/// Returns the upper and the lower half of the digits of `x`.
 #[inline(always)]
 fn split<L: Lane>(x: L) -> (L, L) {
     let scaled = L::literal(L::Scalar::SPLITTER) * x;

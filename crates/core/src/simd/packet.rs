@@ -1,15 +1,14 @@
-//! The number types of a packet: as many numbers as fill a SIMD register, by the `wide` crate.
+//! The packets: as many numbers as fill a SIMD register, from the `wide` crate.
 //!
-//! Each operation rounds as the one of a single number does, so a packet gives each lane the bits
-//! of one ray alone. Where the machine has no register of that width, `wide` uses several smaller
-//! ones.
+//! Each operation rounds like that of a single number, so a packet gives each lane the bits of one
+//! ray alone. Where the machine has no register of that width, `wide` uses several smaller ones.
 
 use crate::simd::lane::{HASH_MULTIPLIER, Lane, Mask};
 use wide::{f32x8, f32x16, f64x4, f64x8, u32x8, u32x16, u64x4, u64x8};
 
 macro_rules! packet {
     ($packet:ident of $lanes:literal $scalar:ident, $index:ident) => {
-        /// All bits of a lane are set, or none.
+        /// A mask whose lanes have all bits set, or none.
         impl Mask for $packet {
             #[inline(always)]
             fn any(self) -> bool {
@@ -64,7 +63,7 @@ macro_rules! packet {
             }
             #[inline(always)]
             fn min(self, other: Self) -> Self {
-                // The instruction of x86 gives `other` if either is NaN, as a lane has to.
+                // The instruction of x86 returns `other` if either is NaN, as `Lane` asks for.
                 if cfg!(target_arch = "x86_64") {
                     self.fast_min(other)
                 } else {
@@ -97,8 +96,8 @@ macro_rules! packet {
             }
             #[inline(always)]
             fn select_index(mask: Self, yes: $index, no: $index) -> $index {
-                // As floats: `wide` selects integers byte by byte, and AVX-512 first turns the mask
-                // into one of bytes.
+                // Selected as floats: `wide` selects integers byte by byte, and AVX-512 first turns
+                // the mask into one of bytes.
                 mask.select(Self::from_bits(yes), Self::from_bits(no)).to_bits()
             }
             #[inline(always)]
@@ -110,7 +109,7 @@ macro_rules! packet {
             #[inline(always)]
             fn first_index(mask: Self, indices: $index) -> Option<u32> {
                 let lanes = mask.to_bitmask();
-                // An index came from a `u32`.
+                // Every index came from a `u32`.
                 (lanes != 0).then(|| indices.to_array()[lanes.trailing_zeros() as usize] as u32)
             }
             #[inline(always)]

@@ -18,6 +18,7 @@ impl<L: Lane> Vector<L> {
         Self { x, y, z }
     }
 
+    /// Returns the same vector in every lane.
     #[inline(always)]
     pub(crate) fn splat(v: Vector<L::Scalar>) -> Self {
         Self::new(L::splat(v.x), L::splat(v.y), L::splat(v.z))
@@ -33,15 +34,15 @@ impl<L: Lane> Vector<L> {
         Self::new(L::literal(0.0), L::literal(0.0), L::literal(0.0))
     }
 
-    /// The sum is taken from x to z: an order that no lane or compiler may change.
+    /// Returns the dot product, summed from x to z: an order that no lane or compiler may change.
     #[inline(always)]
     pub(crate) fn dot(self, other: Self) -> L {
         self.x * other.x + self.y * other.y + self.z * other.z
     }
 
-    /// The dot product as if computed in twice the digits and then rounded: Dot2 of Ogita, Rump and
-    /// Oishi (Accurate Sum and Dot Product, 2005). Barring underflow; where its intermediate
-    /// numbers overflow, the plain one.
+    /// Returns the dot product as if computed in twice the digits and then rounded, barring
+    /// underflow: Dot2 of Ogita, Rump and Oishi (Accurate Sum and Dot Product, 2005). Returns the
+    /// plain dot product if an intermediate number overflows.
     #[inline(always)]
     pub(crate) fn accurate_dot(self, other: Self) -> L {
         let product = |a: L, b: L| (a * b, product_error(a, b, a * b));
@@ -53,6 +54,7 @@ impl<L: Lane> Vector<L> {
         L::select(error.abs().lt(L::literal(f64::INFINITY)), sum + error, sum)
     }
 
+    /// Returns the cross product.
     #[inline(always)]
     pub(crate) fn cross(self, other: Self) -> Self {
         Self::new(
@@ -62,37 +64,43 @@ impl<L: Lane> Vector<L> {
         )
     }
 
-    /// Component by component, as the following.
+    /// Returns the smaller of each component.
     #[inline(always)]
     pub(crate) fn min(self, other: Self) -> Self {
         Self::new(self.x.min(other.x), self.y.min(other.y), self.z.min(other.z))
     }
 
+    /// Returns the larger of each component.
     #[inline(always)]
     pub(crate) fn max(self, other: Self) -> Self {
         Self::new(self.x.max(other.x), self.y.max(other.y), self.z.max(other.z))
     }
 
+    /// Multiplies each component.
     #[inline(always)]
     pub(crate) fn scale(self, other: Self) -> Self {
         Self::new(self.x * other.x, self.y * other.y, self.z * other.z)
     }
 
+    /// Returns the magnitude of each component.
     #[inline(always)]
     pub(crate) fn abs(self) -> Self {
         Self::new(self.x.abs(), self.y.abs(), self.z.abs())
     }
 
+    /// Returns the sum of the magnitudes of the components.
     #[inline(always)]
     pub(crate) fn sum_of_magnitudes(self) -> L {
         self.x.abs() + self.y.abs() + self.z.abs()
     }
 
+    /// Returns the vector at unit length.
     #[inline(always)]
     pub(crate) fn unit(self) -> Self {
         self * (L::literal(1.0) / self.dot(self).sqrt())
     }
 
+    /// Returns `yes` where the mask is true, `no` elsewhere.
     #[inline(always)]
     pub(crate) fn select(mask: L::Mask, yes: Self, no: Self) -> Self {
         Self::new(
@@ -104,11 +112,12 @@ impl<L: Lane> Vector<L> {
 }
 
 impl<S: Scalar> Vector<S> {
-    /// Each component rounded.
+    /// Rounds each component.
     pub(crate) fn rounded(v: DVec3) -> Self {
         Self::new(S::from_f64(v.x), S::from_f64(v.y), S::from_f64(v.z))
     }
 
+    /// Returns the same vector in `f64`.
     pub(crate) fn widened(self) -> DVec3 {
         DVec3::new(self.x.to_f64(), self.y.to_f64(), self.z.to_f64())
     }
@@ -150,8 +159,8 @@ impl<L: Lane> Neg for Vector<L> {
 mod tests {
     use super::*;
 
-    /// Catches an error term that is dropped, doubled or of the wrong sign: of sums that cancel,
-    /// all digits are right.
+    /// Catches an error term that is dropped, doubled or of the wrong sign: sums that cancel keep
+    /// all digits.
     #[test]
     fn accurate_dot_keeps_the_digits_of_sums_that_cancel() {
         let u = 2f64.powi(-24);
@@ -162,7 +171,7 @@ mod tests {
                 Vector::new(1.0 + k / 7.0, -k / 3.0, 1.7),
                 Vector::new(k / 11.0, 2.0 + k / 13.0, 0.9),
             );
-            // The last term takes away what the first two give, but for a rounding.
+            // The last term cancels the first two, up to a rounding.
             let a = Vector { z: -(a.x * b.x + a.y * b.y) / b.z, ..a };
             for (a, b) in [(a, b), (b, a), (Vector::new(a.z, a.x, a.y), Vector::new(b.z, b.x, b.y))]
             {
