@@ -4,23 +4,23 @@
 //! few bits, or an ordinary one. A ray goes anywhere, or to a point on or beside the primitive.
 
 use libfuzzer_sys::arbitrary::{Result, Unstructured};
-use rayweave_accuracy::{Primitive, Ray, promise};
+use rayweave_accuracy::{Primitive, Ray, guarantees};
 
 /// A source of numbers; one that has run dry gives zeros.
 pub type Bytes<'a, 'b> = &'a mut Unstructured<'b>;
 
-/// Decodes a primitive and a point to aim at, and fails where the kernel breaks a promise.
+/// Decodes a primitive and a point to aim at, and fails where the kernel violates a guarantee.
 ///
 /// # Panics
 ///
-/// On a broken promise, with the case as `rayweave intersect` reads it.
+/// On a violation, with the case as `rayweave intersect` reads it.
 pub fn check(primitive: impl FnOnce(Bytes<'_, '_>) -> Result<(Primitive, [f32; 3])>, bytes: &[u8]) {
     let mut bytes = Unstructured::new(bytes);
     let decoded = primitive(&mut bytes).and_then(|(primitive, aim)| Ok((primitive, ray(&mut bytes, aim)?)));
     if let Ok((primitive, ray)) = decoded
-        && let Err(broken) = promise::check(&primitive, &ray)
+        && let Err(violation) = guarantees::check(&primitive, &ray)
     {
-        panic!("{broken}");
+        panic!("{violation}");
     }
 }
 

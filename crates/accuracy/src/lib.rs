@@ -11,8 +11,8 @@
 //! * [`families`]: seeded generators of 36 families of hard cases, with their answers;
 //! * [`kernel`]: what the tracer's own answers;
 //! * [`outcomes`]: what a kernel answered, one JSON line a case;
-//! * [`mod@score`]: verdicts, errors in ulps and leaks a family, and [`goals`] for them;
-//! * [`promise`]: what holds for any ray and primitive, for fuzzing.
+//! * [`mod@score`]: verdicts, errors in ulps and leaks a family, and [`thresholds`] for them;
+//! * [`guarantees`]: what holds for any ray and primitive, for fuzzing.
 //!
 //! What is right:
 //!
@@ -31,22 +31,22 @@ pub mod cases;
 pub mod decimal;
 pub mod families;
 pub mod flip;
-pub mod goals;
+pub mod guarantees;
 mod json_lines;
 pub mod kernel;
 pub mod metrics;
 pub mod oracle;
 pub mod outcomes;
-pub mod promise;
 pub mod score;
+pub mod thresholds;
 pub mod tradeoff;
 
 pub use cases::{Case, Expect, Primitive, Ray};
 pub use decimal::Decimal;
 pub use families::{FAMILIES, Family, generate};
-pub use goals::Tier;
 pub use json_lines::ReadError;
 pub use metrics::Difference;
 pub use oracle::{Answer, answer};
 pub use outcomes::Outcome;
 pub use score::{FamilyScore, score};
+pub use thresholds::Tier;

@@ -1,4 +1,4 @@
-//! What every family promises, on fresh seeds.
+//! Properties that hold in every family, on fresh seeds.
 
 use std::collections::HashSet;
 

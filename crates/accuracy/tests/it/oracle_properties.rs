@@ -1,9 +1,9 @@
 //! The robust kernel against the exact oracle, in f64 and f32, on random and on structured input:
-//! it keeps what `rayweave_accuracy::promise` says.
+//! it keeps what `rayweave_accuracy::guarantees` says.
 
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use rayweave_accuracy::{Primitive, Ray, oracle, promise};
+use rayweave_accuracy::{Primitive, Ray, guarantees, oracle};
 
 /// A multiple of 1/16, with so few bits that products of several do not round: corners, edges,
 /// tangents and parallels are met exactly.
@@ -75,7 +75,8 @@ fn check(
     let Setting { origin, direction, place } = *setting;
     let put = |position| moved(position, place, 1.0);
     let ray = Ray { origin: put(origin), direction: direction.unwrap_or(difference(aim, origin)) };
-    promise::check(&primitive(&put), &ray).map_err(|broken| TestCaseError::fail(broken.to_string()))
+    guarantees::check(&primitive(&put), &ray)
+        .map_err(|violation| TestCaseError::fail(violation.to_string()))
 }
 
 fn config() -> ProptestConfig {
@@ -187,7 +188,7 @@ fn numbers_that_are_not_finite_hit_nothing() {
             let (primitive, ray) = numbers.split_at(numbers.len() - 6);
             let primitive = primitive_of(primitive);
             let ray = Ray { origin: triple(&ray[..3]), direction: triple(&ray[3..]) };
-            promise::check(&primitive, &ray).unwrap_or_else(|broken| panic!("{broken}"));
+            guarantees::check(&primitive, &ray).unwrap_or_else(|violation| panic!("{violation}"));
             oracle::answer(&primitive, &ray)
         };
         assert!(answer(numbers).expect.is_hit());

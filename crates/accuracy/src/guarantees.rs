@@ -1,36 +1,35 @@
-//! What the robust kernel promises of any ray and any primitive, not only of those in the families.
+//! The guarantees of the robust kernel for any ray and any primitive, checked against the oracle.
 //!
-//! * It never panics.
-//! * Input that means nothing is a miss: a number that is not finite, a direction of zero, a
-//!   primitive that no scene may contain. Such are triangles whose area is 0 as a scene has it, to
-//!   8 roundings of f64, where the oracle still tells it from 0; and cylinders without height.
-//! * In f64, whatever other numbers f32 has: a hit has a finite `t` above 0; a decidable verdict is
-//!   right; and the `t` of a decidable hit is off by [`ERROR`] epsilons of itself for each unit of
-//!   its condition number at most. That is far within the goals of [`Tier::Double`].
-//! * In f32 the same, with the epsilon of f32, where the products of a few of the numbers stay
-//!   within its range:
+//! * The kernel never panics.
+//! * Meaningless input is a miss: a number that is not finite, a direction of zero, or a primitive
+//!   that no scene may contain. Such primitives include cylinders without height, and triangles
+//!   whose area a scene takes for 0, to 8 roundings of f64, even where the oracle tells it from 0.
+//! * In f64, for all other f32 input: a hit has a finite `t` above 0; a decidable verdict is right;
+//!   and the relative error of `t` on a decidable hit is at most [`ERROR`] epsilons per unit of its
+//!   condition number. That is far within the thresholds of [`Tier::Double`].
+//! * In f32 the same holds, with the epsilon of f32, where the products of a few of the numbers
+//!   stay within its range:
 //!
-//!   - the radius, and each coordinate of each difference of two positions, is 0 or of a magnitude
+//!   - the radius, and each coordinate of each difference of two positions, is 0 or has a magnitude
 //!     in [`LENGTHS`];
-//!   - the longest component of the direction is of a magnitude in [`DIRECTIONS`], and the others,
-//!     like those of a normal, are 0 or at least [`FLATTEST`] of the longest.
+//!   - the longest component of the direction has a magnitude in [`DIRECTIONS`]; its other
+//!     components, and those of a normal, are 0 or at least [`FLATTEST`] of the longest.
 //!
-//! Decidable is what the oracle calls so, with two exceptions:
+//! A verdict is decidable where the oracle says so, with two exceptions:
 //!
-//! * A hit whose `t` may be off by all of itself, by the bound above, may be missed: it cannot be
-//!   told from one at 0. So it is with a ray that starts on a sphere, to the last bit, and cuts off
-//!   less than 2^-12 of it.
-//! * A triangle's verdict needs a larger margin where a vertex, as seen from the ray's origin, is
-//!   far along one axis and near along another: [`SPREAD`] ulps, of the precision, for each unit of
-//!   the ratio of its coordinates other than 0. The watertight test shears them into one, which is
-//!   rounded as the large one is. A ray that passes an edge a thousand times as long as its
-//!   distance is told from one beside it to some 100 ulps only; but on the same side by both
-//!   triangles there, so that nothing leaks.
+//! * The kernel may miss a hit whose `t` may be off by all of itself, by the bound above: such a
+//!   `t` cannot be told from 0. An example is a ray that starts on a sphere, to the last bit, and
+//!   cuts off less than 2^-12 of it.
+//! * A triangle needs a larger margin where a vertex, as seen from the ray's origin, is far along
+//!   one axis and near along another: [`SPREAD`] ulps, of the precision, per unit of the ratio of
+//!   its coordinates other than 0. The watertight test shears the coordinates into one, which is
+//!   rounded as the large one is. At an edge a thousand times as long as its distance, the kernel
+//!   tells a ray through the edge from one beside it to some 100 ulps only. Both triangles at the
+//!   edge agree on the side, so nothing leaks.
 //!
-//! [`Tier::Plain32`] asks for 2 ulps for each unit of the condition number, in the families. Two
-//! epsilons are 2 ulps just above a power of two and 4 just below; other cases do come to more than
-//! 2 ulps, about one in a million. For a plane, two epsilons are the sum of all roundings there
-//! are.
+//! [`Tier::Plain32`] asks for 2 ulps per unit of the condition number, in the families. Two
+//! epsilons are 2 ulps just above a power of two and 4 just below. Other cases do reach more than
+//! 2 ulps, about one in a million. For a plane, two epsilons are the sum of all roundings.
 //!
 //! [`Tier::Double`]: crate::Tier::Double
 //! [`Tier::Plain32`]: crate::Tier::Plain32
@@ -49,33 +48,33 @@ use crate::kernel;
 use crate::oracle::{self, Answer, DECIDABLE_MARGIN, INFINITE};
 use crate::outcomes::Outcome;
 
-/// Epsilons of relative error in `t` for each unit of its condition number.
+/// The largest relative error of `t`, in epsilons per unit of its condition number.
 pub const ERROR: f64 = 2.0;
-/// Ulps of margin for each unit of a vertex's ratio of coordinates: three times what a search for
-/// the worst case found.
+/// The margin of a triangle's verdict, in ulps per unit of a vertex's ratio of coordinates. It is
+/// three times the worst case that a search found.
 pub const SPREAD: f64 = 0.5;
-/// Lengths that f32 is asked to work with, 2^-20 to 2^27.
+/// The lengths that f32 must handle, 2^-20 to 2^27.
 pub const LENGTHS: RangeInclusive<f64> = 1.0 / (1_u32 << 20) as f64..=(1_u32 << 27) as f64;
-/// Longest components of directions that f32 is asked to work with, 2^-30 to 2^30.
+/// The longest components of directions that f32 must handle, 2^-30 to 2^30.
 pub const DIRECTIONS: RangeInclusive<f64> = 1.0 / (1_u32 << 30) as f64..=(1_u32 << 30) as f64;
-/// The smallest component of a direction that f32 is asked to work with, where the longest is 1.
+/// The smallest component of a direction that f32 must handle, relative to the longest.
 pub const FLATTEST: f64 = 1.0 / (1_u32 << 20) as f64;
 
-/// A promise that the kernel broke.
+/// A case in which the kernel violated a guarantee.
 #[derive(Clone, Debug)]
-pub struct Broken {
+pub struct Violation {
     /// The inputs and the exact answer.
     pub case: Case,
-    /// What the kernel computed with.
+    /// The precision in which the kernel computed.
     pub precision: Precision,
-    /// What it answered.
+    /// The answer of the kernel.
     pub outcome: Outcome,
-    /// What is wrong with that.
+    /// The guarantee that it violates.
     pub problem: &'static str,
 }
 
-/// With the case, on a line of its own, as `rayweave intersect` reads it.
-impl fmt::Display for Broken {
+/// Shows the problem, then the case on a line of its own, as `rayweave intersect` reads it.
+impl fmt::Display for Violation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { case, precision, outcome, problem } = self;
         let case = serde_json::to_string(case).map_err(|_| fmt::Error)?;
@@ -83,13 +82,13 @@ impl fmt::Display for Broken {
     }
 }
 
-/// Sends `ray` against `primitive` through the kernel, in f64 and in f32. Meshes are not promised
-/// anything here.
+/// Sends `ray` against `primitive` through the kernel, in f64 and in f32. There are no guarantees
+/// for meshes.
 ///
 /// # Errors
 ///
-/// The first promise that the kernel broke.
-pub fn check(primitive: &Primitive, ray: &Ray) -> Result<(), Box<Broken>> {
+/// The first violation.
+pub fn check(primitive: &Primitive, ray: &Ray) -> Result<(), Box<Violation>> {
     let Some(inputs) = Inputs::of(primitive, ray) else { return Ok(()) };
     let meaningful = inputs.are_meaningful(primitive);
     let answer = if meaningful {
@@ -124,13 +123,13 @@ pub fn check(primitive: &Primitive, ray: &Ray) -> Result<(), Box<Broken>> {
         if let Some(problem) =
             problem(&answer, &outcome, inputs.sure_margin(epsilon), ERROR * epsilon)
         {
-            return Err(Box::new(Broken { case, precision, outcome, problem }));
+            return Err(Box::new(Violation { case, precision, outcome, problem }));
         }
     }
     Ok(())
 }
 
-/// What is wrong with an outcome.
+/// Returns the guarantee that an outcome violates, or `None`.
 fn problem(
     answer: &Answer,
     outcome: &Outcome,
@@ -154,24 +153,24 @@ fn problem(
     }
 }
 
-/// Of an `expected` other than 0.
+/// Returns the relative error of `t`; `expected` is not 0.
 fn relative_error(t: f64, expected: &Decimal) -> f64 {
     let expected = expected.exact();
     ((RBig::try_from(t).unwrap_or_default() - &expected) / expected).to_f64().value().abs()
 }
 
-/// The numbers of a ray and a primitive, by what they are.
+/// The numbers of a ray and a primitive, by meaning.
 struct Inputs {
     origin: DVec3,
     direction: DVec3,
-    /// Those of the primitive.
+    /// The positions of the primitive.
     positions: Vec<DVec3>,
     normal: Option<DVec3>,
     radius: Option<f64>,
 }
 
 impl Inputs {
-    /// `None` for a mesh.
+    /// Collects the numbers; `None` for a mesh.
     fn of(primitive: &Primitive, ray: &Ray) -> Option<Self> {
         let (positions, normal, radius) = match *primitive {
             Primitive::Plane { point, normal } => (vec![point], Some(normal), None),
@@ -190,8 +189,8 @@ impl Inputs {
         })
     }
 
-    /// Whether there is a ray, and a scene may contain the primitive; what the oracle knows better
-    /// of the latter may be left to it.
+    /// Returns whether there is a ray and a scene may contain the primitive. Primitives that the
+    /// oracle rejects as well need no check here.
     fn are_meaningful(&self, primitive: &Primitive) -> bool {
         let accepted = match (primitive, &self.positions[..]) {
             (Primitive::Triangle { .. }, &[a, b, c]) => {
@@ -208,7 +207,7 @@ impl Inputs {
             && self.radius.is_none_or(f64::is_finite)
     }
 
-    /// Whether products of a few of them stay within the range of f32.
+    /// Returns whether products of a few of the numbers stay within the range of f32.
     fn fit_f32(&self) -> bool {
         let fits = |length: f64| length == 0.0 || LENGTHS.contains(&length.abs());
         let even = |v: DVec3| {
@@ -223,7 +222,7 @@ impl Inputs {
             && DIRECTIONS.contains(&self.direction.abs().max_element())
     }
 
-    /// The margin from which on the verdict is promised, in ulps of f32.
+    /// Returns the margin, in ulps of f32, from which the verdict is guaranteed.
     fn sure_margin(&self, epsilon: f64) -> f64 {
         // Three positions make a triangle.
         let [_, _, _] = self.positions[..] else { return DECIDABLE_MARGIN };
@@ -251,9 +250,9 @@ mod tests {
         Outcome { id: String::new(), hit: t.is_some(), t }
     }
 
-    /// Catches a check that everything passes.
+    /// Catches a check that always passes.
     #[test]
-    fn whatever_is_wrong_is_seen() {
+    fn every_violation_is_found() {
         let judge = |expected, found, sure| {
             problem(&answer(expected), &outcome(found), sure, 2.0 * f64::EPSILON)
         };
@@ -277,15 +276,15 @@ mod tests {
             assert_eq!(judge(Some("1"), found, 9.0), None);
         }
         assert!(judge(None, Some(0.0), 9.0).is_some());
-        // So it is where no digit of `t` is certain.
+        // The same holds where no digit of `t` is certain.
         let blurred = Answer { cond: 0.25 / f64::EPSILON, ..answer(Some("1")) };
         assert!(problem(&blurred, &outcome(None), 8.0, f64::EPSILON).is_some());
         assert_eq!(problem(&blurred, &outcome(None), 8.0, 4.0 * f64::EPSILON), None);
     }
 
-    /// Catches limits that ordinary input does not keep, or that keep nothing out.
+    /// Catches limits that exclude ordinary input, or that exclude nothing.
     #[test]
-    fn the_limits_of_f32_are_where_they_are_said_to_be() {
+    fn the_limits_of_f32_are_as_documented() {
         let inputs = |center: [f32; 3], radius, direction| {
             let ray = Ray { origin: [1.0, 2.0, 3.0], direction };
             Inputs::of(&Primitive::Sphere { center, radius }, &ray).expect("no mesh")
@@ -305,7 +304,7 @@ mod tests {
         assert!(outside.iter().all(|inputs| !inputs.fit_f32()));
     }
 
-    /// Catches a spread that is measured from elsewhere, or the same in both precisions.
+    /// Catches a spread not measured from the origin, or the same in both precisions.
     #[test]
     fn a_wide_triangle_needs_a_wide_margin() {
         let ray = Ray { origin: [1.0; 3], direction: [0.0, 0.0, 1.0] };
