@@ -14,7 +14,7 @@ use crate::json_lines::{self, ReadError};
 /// Every number of `primitive` and `ray` is an f32: a kernel in f64 widens it. Equality follows
 /// IEEE 754, so that a case with a NaN in it differs from itself.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Case {
+pub struct HardCase {
     /// The family it belongs to: see [`crate::families`].
     pub family: String,
     /// Its name, different from every other in a file.
@@ -204,7 +204,7 @@ impl From<Expect> for RawExpect {
 /// # Errors
 ///
 /// The first line that is no case, with its number and what was expected there.
-pub fn read(source: impl BufRead) -> Result<Vec<Case>, ReadError> {
+pub fn read(source: impl BufRead) -> Result<Vec<HardCase>, ReadError> {
     json_lines::read(source)
 }
 
@@ -213,6 +213,6 @@ pub fn read(source: impl BufRead) -> Result<Vec<Case>, ReadError> {
 /// # Errors
 ///
 /// Those of `target`.
-pub fn write(target: impl Write, cases: &[Case]) -> io::Result<()> {
+pub fn write(target: impl Write, cases: &[HardCase]) -> io::Result<()> {
     json_lines::write(target, cases)
 }

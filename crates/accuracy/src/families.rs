@@ -13,8 +13,8 @@ mod plane;
 mod sphere;
 mod triangle;
 
-use crate::cases::{Case, Primitive, Ray};
-use crate::oracle::{Answer, answer};
+use crate::cases::{HardCase, Primitive, Ray};
+use crate::oracle::{ExactAnswer, answer};
 
 use draw::Draw;
 
@@ -64,7 +64,7 @@ impl Family {
         Self { wanted, ..self }
     }
 
-    fn accepts(&self, answer: &Answer) -> bool {
+    fn accepts(&self, answer: &ExactAnswer) -> bool {
         match self.wanted {
             Wanted::Any => true,
             Wanted::Hit => answer.expect.is_hit(),
@@ -73,7 +73,7 @@ impl Family {
     }
 
     /// The case number `index`.
-    fn case(&self, seed: u64, index: usize) -> Case {
+    fn case(&self, seed: u64, index: usize) -> HardCase {
         let mut draw = Draw::new(seed, self.name, index);
         let mut attempt = || {
             let setup = (self.draw)(&mut draw, index);
@@ -90,7 +90,7 @@ impl Family {
         }
         let (setup, answer) = case;
         let separator = if answer.reason.is_empty() { "" } else { "; " };
-        Case {
+        HardCase {
             family: self.name.to_owned(),
             id: format!("{}-s{seed}-{index:04}", self.name),
             primitive: setup.primitive,
@@ -106,7 +106,7 @@ impl Family {
 
 /// `count` cases of a family with their exact answers; the first of them do not depend on `count`.
 #[must_use]
-pub fn generate(family: &Family, seed: u64, count: usize) -> Vec<Case> {
+pub fn generate(family: &Family, seed: u64, count: usize) -> Vec<HardCase> {
     (0..count).map(|index| family.case(seed, index)).collect()
 }
 

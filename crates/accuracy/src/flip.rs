@@ -1,11 +1,11 @@
 //! FLIP (Andersson, Nilsson, Akenine-Moller et al., "FLIP: A Difference Evaluator for Alternating
-//! Images", 2020): what a person sees who flips between two pictures, by the authors' own program.
+//! Images", 2020): what a person sees who flips between two images, by the authors' own program.
 
 use nv_flip::{DEFAULT_PIXELS_PER_DEGREE, FlipImageFloat, FlipImageRgb8, magma_lut};
 use rayweave_contract::Image;
 
 /// From 0, no difference to be seen, to 1 for each pixel, at the distance the authors suggest. The
-/// pictures are compared as they look in an 8-bit file, which is shown as sRGB.
+/// images are compared as they look in an 8-bit file, which is shown as sRGB.
 pub(crate) fn map(truth: &Image, found: &Image) -> FlipImageFloat {
     nv_flip::flip(shown(truth), shown(found), DEFAULT_PIXELS_PER_DEGREE)
 }
@@ -15,19 +15,19 @@ pub(crate) fn mean(map: &FlipImageFloat) -> f64 {
     pixels.iter().copied().map(f64::from).sum::<f64>() / pixels.len() as f64
 }
 
-/// The difference as a picture: black where there is none, then violet and orange to white.
+/// The difference as an image: black where there is none, then violet and orange to white.
 ///
 /// # Panics
 ///
-/// If the pictures differ in size.
+/// If the images differ in size.
 #[must_use]
-pub fn picture(truth: &Image, found: &Image) -> Image {
+pub fn difference_image(truth: &Image, found: &Image) -> Image {
     let colors = map(truth, found).apply_color_lut(&magma_lut()).to_vec();
-    let mut picture = truth.clone();
-    for (pixel, color) in picture.pixels_mut().iter_mut().zip(colors.chunks_exact(3)) {
+    let mut image = truth.clone();
+    for (pixel, color) in image.pixels_mut().iter_mut().zip(colors.chunks_exact(3)) {
         *pixel = [0, 1, 2].map(|c| f32::from(color[c]) / 255.0);
     }
-    picture
+    image
 }
 
 fn shown(image: &Image) -> FlipImageRgb8 {

@@ -42,10 +42,10 @@ use glam::DVec3;
 use rayweave_core::Precision;
 use rayweave_core::scene::Triangle;
 
-use crate::cases::{Case, Expect, Primitive, Ray};
+use crate::cases::{Expect, HardCase, Primitive, Ray};
 use crate::decimal::Decimal;
 use crate::kernel;
-use crate::oracle::{self, Answer, DECIDABLE_MARGIN, INFINITE};
+use crate::oracle::{self, DECIDABLE_MARGIN, ExactAnswer, INFINITE};
 use crate::outcomes::Outcome;
 
 /// The largest relative error of `t`, in epsilons per unit of its condition number.
@@ -64,7 +64,7 @@ pub const FLATTEST: f64 = 1.0 / (1_u32 << 20) as f64;
 #[derive(Clone, Debug)]
 pub struct Violation {
     /// The inputs and the exact answer.
-    pub case: Case,
+    pub case: HardCase,
     /// The precision in which the kernel computed.
     pub precision: Precision,
     /// The answer of the kernel.
@@ -94,7 +94,7 @@ pub fn check(primitive: &Primitive, ray: &Ray) -> Result<(), Box<Violation>> {
     let answer = if meaningful {
         oracle::answer(primitive, ray)
     } else {
-        Answer {
+        ExactAnswer {
             expect: Expect::Miss,
             cond: 0.0,
             margin: INFINITE,
@@ -102,7 +102,7 @@ pub fn check(primitive: &Primitive, ray: &Ray) -> Result<(), Box<Violation>> {
             reason: "no meaning",
         }
     };
-    let case = Case {
+    let case = HardCase {
         family: "any".into(),
         id: "any".into(),
         primitive: primitive.clone(),
@@ -131,7 +131,7 @@ pub fn check(primitive: &Primitive, ray: &Ray) -> Result<(), Box<Violation>> {
 
 /// Returns the guarantee that an outcome violates, or `None`.
 fn problem(
-    answer: &Answer,
+    answer: &ExactAnswer,
     outcome: &Outcome,
     sure_margin: f64,
     error: f64,
@@ -240,10 +240,10 @@ impl Inputs {
 mod tests {
     use super::*;
 
-    fn answer(t: Option<&str>) -> Answer {
+    fn answer(t: Option<&str>) -> ExactAnswer {
         let decimal = |text: &str| text.parse::<Decimal>().expect("a number");
         let expect = t.map_or(Expect::Miss, |t| Expect::MeshHit { t: decimal(t) });
-        Answer { expect, cond: 3.0, margin: 8.0, decidable: true, reason: "" }
+        ExactAnswer { expect, cond: 3.0, margin: 8.0, decidable: true, reason: "" }
     }
 
     fn outcome(t: Option<f64>) -> Outcome {
@@ -277,7 +277,7 @@ mod tests {
         }
         assert!(judge(None, Some(0.0), 9.0).is_some());
         // The same holds where no digit of `t` is certain.
-        let blurred = Answer { cond: 0.25 / f64::EPSILON, ..answer(Some("1")) };
+        let blurred = ExactAnswer { cond: 0.25 / f64::EPSILON, ..answer(Some("1")) };
         assert!(problem(&blurred, &outcome(None), 8.0, f64::EPSILON).is_some());
         assert_eq!(problem(&blurred, &outcome(None), 8.0, 4.0 * f64::EPSILON), None);
     }

@@ -1,6 +1,6 @@
 //! The tracer's own kernel, asked for its answers.
 
-use crate::cases::{Case, Primitive};
+use crate::cases::{HardCase, Primitive};
 use crate::outcomes::Outcome;
 use glam::DVec3;
 use rayweave_core::scene::{
@@ -25,7 +25,7 @@ impl Prepared {
     /// Of `case`. Input that means nothing, which no scene may contain, is a miss; so is every
     /// triangle without area.
     #[must_use]
-    pub fn new(case: &Case, arithmetic: Arithmetic) -> Self {
+    pub fn new(case: &HardCase, arithmetic: Arithmetic) -> Self {
         Self {
             id: case.id.clone(),
             caster: Caster::new(&scene_of(&case.primitive).with_arithmetic(arithmetic)).ok(),
@@ -55,7 +55,7 @@ impl Prepared {
 
 /// What the kernel that renders answers to `case`.
 #[must_use]
-pub fn outcome(case: &Case, arithmetic: Arithmetic) -> Outcome {
+pub fn outcome(case: &HardCase, arithmetic: Arithmetic) -> Outcome {
     Prepared::new(case, arithmetic).outcome()
 }
 

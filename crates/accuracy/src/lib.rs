@@ -1,8 +1,8 @@
-//! How right is it: pictures against the truth, and single rays against exact answers. Prints
+//! How right is it: images against the truth, and single rays against exact answers. Prints
 //! nothing.
 //!
 //! * [`tradeoff`]: every setting of the tracer, its time and its error;
-//! * [`metrics`]: how far a picture is from another, and [`flip`], as one sees it.
+//! * [`metrics`]: how far an image is from another, and [`flip`], as one sees it.
 //!
 //! Hard cases of rays and primitives:
 //!
@@ -41,12 +41,12 @@ pub mod score;
 pub mod thresholds;
 pub mod tradeoff;
 
-pub use cases::{Case, Expect, Primitive, Ray};
+pub use cases::{Expect, HardCase, Primitive, Ray};
 pub use decimal::Decimal;
 pub use families::{FAMILIES, Family, generate};
 pub use json_lines::ReadError;
-pub use metrics::Difference;
-pub use oracle::{Answer, answer};
+pub use metrics::ImageDifference;
+pub use oracle::{ExactAnswer, answer};
 pub use outcomes::Outcome;
 pub use score::{FamilyScore, score};
 pub use thresholds::Tier;

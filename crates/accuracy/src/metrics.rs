@@ -1,12 +1,12 @@
-//! How far a picture is from another, as one would see it: both are clamped to 0..=1 first, in
+//! How far an image is from another, as one would see it: both are clamped to 0..=1 first, in
 //! linear light, as an 8-bit file would do. What a channel has above 1 or below 0 does not count.
 
 use crate::flip;
 use rayweave_contract::Image;
 
-/// The error of a picture. A channel that is NaN is off by 1, all there is.
+/// The error of an image. A channel that is NaN is off by 1, all there is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Difference {
+pub struct ImageDifference {
     /// The root of the mean square over all channels.
     pub rmse: f64,
     /// The largest of a channel.
@@ -17,12 +17,12 @@ pub struct Difference {
     pub flip: f64,
 }
 
-impl Difference {
+impl ImageDifference {
     /// Between the truth and what was found.
     ///
     /// # Panics
     ///
-    /// If the pictures differ in size.
+    /// If the images differ in size.
     #[must_use]
     pub fn between(truth: &Image, found: &Image) -> Self {
         let pairs = || truth.pixels().iter().zip(found.pixels());
@@ -35,18 +35,18 @@ impl Difference {
         }
     }
 
-    /// Peak signal-to-noise ratio in dB for a peak of 1: infinite for equal pictures.
+    /// Peak signal-to-noise ratio in dB for a peak of 1: infinite for equal images.
     #[must_use]
     pub fn psnr(&self) -> f64 {
         psnr(self.rmse)
     }
 }
 
-/// The root mean square error over all channels alone, as in [`Difference::rmse`].
+/// The root mean square error over all channels alone, as in [`ImageDifference::rmse`].
 ///
 /// # Panics
 ///
-/// If the pictures differ in size.
+/// If the images differ in size.
 #[must_use]
 pub fn rmse(truth: &Image, found: &Image) -> f64 {
     let squares: f64 = errors(truth, found).map(|error| error * error).sum();
@@ -56,7 +56,7 @@ pub fn rmse(truth: &Image, found: &Image) -> f64 {
 /// Of each channel.
 fn errors<'a>(truth: &'a Image, found: &'a Image) -> impl Iterator<Item = f64> + 'a {
     let size = |image: &Image| (image.width(), image.height());
-    assert_eq!(size(truth), size(found), "the pictures differ in size");
+    assert_eq!(size(truth), size(found), "the images differ in size");
     let (truth, found) = (truth.pixels().as_flattened(), found.pixels().as_flattened());
     truth.iter().zip(found).map(|(&a, &b)| error(a, b))
 }
@@ -76,14 +76,14 @@ fn error(truth: f32, found: f32) -> f64 {
 mod tests {
     use super::*;
 
-    fn picture(pixels: [[f32; 3]; 2]) -> Image {
+    fn image(pixels: [[f32; 3]; 2]) -> Image {
         let mut image = Image::new(2, 1).expect("two pixels");
         image.pixels_mut().copy_from_slice(&pixels);
         image
     }
 
-    fn between(truth: [[f32; 3]; 2], found: [[f32; 3]; 2]) -> Difference {
-        Difference::between(&picture(truth), &picture(found))
+    fn between(truth: [[f32; 3]; 2], found: [[f32; 3]; 2]) -> ImageDifference {
+        ImageDifference::between(&image(truth), &image(found))
     }
 
     const GREY: [f32; 3] = [0.5, 0.25, 1.0];
@@ -91,7 +91,7 @@ mod tests {
     #[test]
     fn equal_pictures() {
         let difference = between([GREY, [0.0; 3]], [GREY, [0.0; 3]]);
-        assert_eq!(difference, Difference { rmse: 0.0, max: 0.0, share_off: 0.0, flip: 0.0 });
+        assert_eq!(difference, ImageDifference { rmse: 0.0, max: 0.0, share_off: 0.0, flip: 0.0 });
         assert_eq!(difference.psnr(), f64::INFINITY);
     }
 

@@ -35,12 +35,12 @@ use exact::{Surd, Vector};
 
 /// From which margin on a good f32 kernel must be right, in ulps.
 pub const DECIDABLE_MARGIN: f64 = 4.0;
-/// What stands for infinity in [`Answer::cond`] and [`Answer::margin`], as JSON has none.
+/// What stands for infinity in [`ExactAnswer::cond`] and [`ExactAnswer::margin`], as JSON has none.
 pub const INFINITE: f64 = 9.9e99;
 
 /// The exact answer to a case, and how hard it is.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Answer {
+pub struct ExactAnswer {
     /// The answer.
     pub expect: Expect,
     /// The relative condition number of `t`, to four digits, at most [`INFINITE`]; 0 on a miss.
@@ -80,13 +80,13 @@ impl Trace {
 /// The exact answer to a ray against a primitive. Defined for every input, finite or not: what is
 /// right in the odd cases is said at the head of this crate.
 #[must_use]
-pub fn answer(primitive: &Primitive, ray: &Ray) -> Answer {
+pub fn answer(primitive: &Primitive, ray: &Ray) -> ExactAnswer {
     let mesh = matches!(primitive, Primitive::Mesh { .. });
     let (trace, expect) = match trace_finite(primitive, ray) {
         Some((trace, expect)) => (trace, expect),
         None => (Trace::miss("non-finite input", f64::INFINITY), Expect::Miss),
     };
-    Answer {
+    ExactAnswer {
         decidable: trace.margin >= DECIDABLE_MARGIN || (mesh && expect.is_hit()),
         expect,
         cond: four_digits(trace.hit.map_or(0.0, |hit| hit.cond)),

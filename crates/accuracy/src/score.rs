@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use dashu_ratio::RBig;
 
-use crate::cases::{Case, Expect};
+use crate::cases::{Expect, HardCase};
 use crate::outcomes::Outcome;
 
 /// Bits of an f32 behind the first.
@@ -62,7 +62,7 @@ impl FamilyScore {
 /// answer are left out; of several outcomes with one id the last counts, and an unknown id does
 /// not.
 #[must_use]
-pub fn score(cases: &[Case], outcomes: &[Outcome]) -> Vec<FamilyScore> {
+pub fn score(cases: &[HardCase], outcomes: &[Outcome]) -> Vec<FamilyScore> {
     let outcomes: HashMap<&str, &Outcome> =
         outcomes.iter().map(|outcome| (outcome.id.as_str(), outcome)).collect();
     let mut tallies: Vec<Tally> = Vec::new();
@@ -93,7 +93,7 @@ impl Tally {
         }
     }
 
-    fn add(&mut self, case: &Case, expect: &Expect, outcome: Option<&Outcome>) {
+    fn add(&mut self, case: &HardCase, expect: &Expect, outcome: Option<&Outcome>) {
         let score = &mut self.score;
         let hit = outcome.is_some_and(|outcome| outcome.hit);
         let t = outcome.filter(|outcome| outcome.hit).and_then(|outcome| outcome.t);
@@ -205,7 +205,7 @@ mod tests {
     }
 
     /// A case of family `f` whose answer is `t`, or a miss; for a mesh if its id begins with `m`.
-    fn case(id: &str, t: Option<&str>, decidable: bool) -> Case {
+    fn case(id: &str, t: Option<&str>, decidable: bool) -> HardCase {
         let decimal = |text: &str| text.parse::<crate::Decimal>().expect("a number");
         let vector = || Box::new(["0", "0", "0"].map(decimal));
         let expect = match t.map(decimal) {
@@ -213,7 +213,7 @@ mod tests {
             Some(t) if id.starts_with('m') => Expect::MeshHit { t },
             Some(t) => Expect::Hit { t, point: vector(), normal: vector() },
         };
-        Case {
+        HardCase {
             family: "f".into(),
             id: id.into(),
             primitive: Primitive::Mesh { triangles: Vec::new() },
@@ -280,7 +280,7 @@ mod tests {
 
     #[test]
     fn cases_without_an_answer_and_empty_families_have_no_errors() {
-        let unanswered = Case { expect: None, ..case("a", None, true) };
+        let unanswered = HardCase { expect: None, ..case("a", None, true) };
         assert_eq!(score(&[unanswered], &[]), []);
         let [only] = &score(&[case("b", None, true)], &[outcome("b", None)])[..] else { panic!() };
         assert_eq!((only.max, only.p50, only.wrong), (None, None, 0));

@@ -6,12 +6,12 @@ mod front;
 mod reference;
 mod setting;
 
-pub use cost::Cost;
+pub use cost::ArithmeticCost;
 pub use front::pareto_front;
 pub use reference::{Reference, reference_rays_per_pixel};
 pub use setting::{ARITHMETICS, EXACT, Setting};
 
-use crate::metrics::{Difference, rmse};
+use crate::metrics::{ImageDifference, rmse};
 use cost::Parts;
 use rayweave_contract::{Digest, Image, Strategy, Work};
 use rayweave_core::{Formulas, Scene};
@@ -22,10 +22,10 @@ use std::num::{NonZeroU32, NonZeroUsize};
 use std::time::Instant;
 
 /// What is studied, and how.
-pub struct Experiment<'a> {
+pub struct TradeoffExperiment<'a> {
     /// The scene, whose own sampling and anti-aliasing are of no consequence.
     pub scene: &'a Scene,
-    /// Width and height of the pictures in pixels.
+    /// Width and height of the images in pixels.
     pub size: (u32, u32),
     /// Renders what is timed, on the caller's thread.
     pub strategy: &'a dyn Strategy,
@@ -35,22 +35,22 @@ pub struct Experiment<'a> {
 
 /// What was found.
 #[derive(Debug)]
-pub struct Study {
+pub struct TradeoffStudy {
     /// The truth.
     pub reference: Reference,
     /// A row a setting.
-    pub rows: Vec<Row>,
+    pub rows: Vec<TradeoffRow>,
     /// What the arithmetics cost, on the whole scene and on each kind of primitive in it.
-    pub costs: Vec<Cost>,
+    pub costs: Vec<ArithmeticCost>,
     /// Rounds measured.
     pub rounds: usize,
-    /// Whether every timed picture was the first of its setting, bit for bit.
+    /// Whether every timed image was the first of its setting, bit for bit.
     pub repeatable: bool,
 }
 
 /// A setting, measured.
 #[derive(Debug)]
-pub struct Row {
+pub struct TradeoffRow {
     /// The setting.
     pub setting: Setting,
     /// Times to render, one a round, in nanoseconds.
@@ -60,7 +60,7 @@ pub struct Row {
     /// The time of the lab report's own setting over this one's, within a round.
     pub speedup: Interval,
     /// From the truth.
-    pub error: Difference,
+    pub error: ImageDifference,
     /// Of that, what rounding did: root mean square from the same rays in the most exact
     /// arithmetic.
     pub arithmetic_rmse: f64,
@@ -71,46 +71,47 @@ pub struct Row {
     pub in_front: bool,
 }
 
-impl Study {
+impl TradeoffStudy {
     /// The row of the lab report's own setting.
     ///
     /// # Panics
     ///
     /// Never: it is among the settings of every scene.
     #[must_use]
-    pub fn report_row(&self) -> &Row {
+    pub fn report_row(&self) -> &TradeoffRow {
         let deepest = self.rows[0].setting.max_reflections;
-        let is_report = |row: &&Row| row.setting == Setting::report(deepest);
+        let is_report = |row: &&TradeoffRow| row.setting == Setting::report(deepest);
         self.rows.iter().find(is_report).expect("among the settings")
     }
 
     /// The fastest setting whose PSNR is `psnr` dB or more.
     #[must_use]
-    pub fn fastest_with(&self, psnr: f64) -> Option<&Row> {
+    pub fn fastest_with(&self, psnr: f64) -> Option<&TradeoffRow> {
         fastest(self.rows.iter().filter(|row| row.error.psnr() >= psnr))
     }
 
     /// The same among those with robust formulas.
     #[must_use]
-    pub fn fastest_robust(&self, psnr: f64) -> Option<&Row> {
-        let robust = |row: &&Row| row.setting.arithmetic.formulas == Formulas::Robust;
+    pub fn fastest_robust(&self, psnr: f64) -> Option<&TradeoffRow> {
+        let robust = |row: &&TradeoffRow| row.setting.arithmetic.formulas == Formulas::Robust;
         fastest(self.rows.iter().filter(robust).filter(|row| row.error.psnr() >= psnr))
     }
 
     /// The same among those that differ from the lab report's own in their density alone.
     #[must_use]
-    pub fn fastest_report_like(&self, psnr: f64) -> Option<&Row> {
+    pub fn fastest_report_like(&self, psnr: f64) -> Option<&TradeoffRow> {
         let own = self.report_row().setting;
-        let like = |row: &&Row| Setting { antialiasing: own.antialiasing, ..row.setting } == own;
+        let like =
+            |row: &&TradeoffRow| Setting { antialiasing: own.antialiasing, ..row.setting } == own;
         fastest(self.rows.iter().filter(like).filter(|row| row.error.psnr() >= psnr))
     }
 }
 
-fn fastest<'a>(rows: impl Iterator<Item = &'a Row>) -> Option<&'a Row> {
+fn fastest<'a>(rows: impl Iterator<Item = &'a TradeoffRow>) -> Option<&'a TradeoffRow> {
     rows.min_by(|a, b| a.median_ns.total_cmp(&b.median_ns))
 }
 
-/// One of the pictures that are timed.
+/// One of the images that are timed.
 struct Subject<'a> {
     scene: &'a Scene,
     setting: Setting,
@@ -118,19 +119,19 @@ struct Subject<'a> {
     samples_ns: Vec<u64>,
 }
 
-impl Experiment<'_> {
+impl TradeoffExperiment<'_> {
     /// Renders the truth, then measures every setting in interleaved rounds. The warm-up gives the
-    /// errors, the rounds the times. `render` gives the picture of a work, untimed; `progress` is
+    /// errors, the rounds the times. `render` gives the image of a work, untimed; `progress` is
     /// told what share is done, between the timed spans.
     ///
     /// # Errors
     ///
-    /// A scene that is not sound, a picture that cannot be, and whatever the strategy says.
+    /// A scene that is not sound, an image that cannot be, and whatever the strategy says.
     pub fn run(
         &self,
         render: impl FnMut(&dyn Work) -> Result<Image, String>,
         mut progress: impl FnMut(f64),
-    ) -> Result<Study, String> {
+    ) -> Result<TradeoffStudy, String> {
         let begin = Instant::now();
         let reference = Reference::new(self.scene, self.size, render)?;
         let settings = Setting::all(self.scene);
@@ -146,7 +147,7 @@ impl Experiment<'_> {
         while let Some(turn) = schedule.next(begin.elapsed()) {
             progress(turn.fraction);
             let subject = &mut subjects[turn.entry];
-            let Timed { picture, digest, nanoseconds } =
+            let Timed { image, digest, nanoseconds } =
                 timed(self.strategy, &subject.setting, subject.scene, self.size)?;
             if turn.round.is_some() {
                 subject.samples_ns.push(nanoseconds);
@@ -157,18 +158,18 @@ impl Experiment<'_> {
             if turn.entry < settings.len() {
                 // Of settings that differ in the arithmetic the most exact one comes first.
                 if subject.setting.arithmetic == EXACT {
-                    exact = Some(picture.clone());
+                    exact = Some(image.clone());
                 }
-                let exact = exact.as_ref().unwrap_or(&picture);
+                let exact = exact.as_ref().unwrap_or(&image);
                 errors.push(Errors {
-                    all: Difference::between(&reference.picture, &picture),
-                    arithmetic: rmse(exact, &picture),
+                    all: ImageDifference::between(&reference.image, &image),
+                    arithmetic: rmse(exact, &image),
                 });
             }
         }
         let times: Vec<&[u64]> = subjects.iter().map(|subject| &subject.samples_ns[..]).collect();
         let costs = parts.costs(&settings, &times);
-        Ok(Study {
+        Ok(TradeoffStudy {
             reference,
             rows: rows(&settings, &times, &errors),
             costs,
@@ -184,11 +185,11 @@ impl<'a> Subject<'a> {
     }
 }
 
-/// A picture, and how long it took.
+/// An image, and how long it took.
 pub struct Timed {
     /// What was rendered.
-    pub picture: Image,
-    /// Of the picture.
+    pub image: Image,
+    /// Of the image.
     pub digest: Digest,
     /// To render it.
     pub nanoseconds: u64,
@@ -198,7 +199,7 @@ pub struct Timed {
 ///
 /// # Errors
 ///
-/// A scene that is not sound, a picture that cannot be, and whatever the strategy says.
+/// A scene that is not sound, an image that cannot be, and whatever the strategy says.
 pub fn timed(
     strategy: &dyn Strategy,
     setting: &Setting,
@@ -210,16 +211,16 @@ pub fn timed(
     let mut executor = executor.map_err(|e| e.to_string())?;
     let sample = executor.render(&Entry { strategy, threads: NonZeroUsize::MIN })?;
     let (digest, nanoseconds) = (sample.digest, sample.render_ns);
-    Ok(Timed { picture: executor.into_image(), digest, nanoseconds })
+    Ok(Timed { image: executor.into_image(), digest, nanoseconds })
 }
 
-/// How far a setting's picture is off.
+/// How far a setting's image is off.
 struct Errors {
-    all: Difference,
+    all: ImageDifference,
     arithmetic: f64,
 }
 
-fn rows(settings: &[Setting], times: &[&[u64]], errors: &[Errors]) -> Vec<Row> {
+fn rows(settings: &[Setting], times: &[&[u64]], errors: &[Errors]) -> Vec<TradeoffRow> {
     let place =
         |wanted: Setting| settings.iter().position(|s| *s == wanted).expect("among the settings");
     let deepest = settings[0].max_reflections;
@@ -233,7 +234,7 @@ fn rows(settings: &[Setting], times: &[&[u64]], errors: &[Errors]) -> Vec<Row> {
     let front = pareto_front(&points);
     let row = |(i, setting): (usize, &Setting)| {
         let unlimited = place(Setting { arithmetic: EXACT, max_reflections: deepest, ..*setting });
-        Row {
+        TradeoffRow {
             setting: *setting,
             samples_ns: times[i].to_vec(),
             median_ns: medians[i],

@@ -4,7 +4,7 @@ mod data;
 mod plot;
 mod table;
 
-use rayweave_accuracy::tradeoff::{Row, Setting, Study};
+use rayweave_accuracy::tradeoff::{Setting, TradeoffRow, TradeoffStudy};
 use rayweave_measure::Machine;
 
 /// A study with everything that is needed to read it.
@@ -17,7 +17,7 @@ pub struct Report<'a> {
     /// Of the pictures, in pixels.
     pub height: u32,
     /// What was measured.
-    pub study: &'a Study,
+    pub study: &'a TradeoffStudy,
     /// The PSNR in dB that a setting is asked for.
     pub target_psnr: f64,
     /// What it was measured on.
@@ -54,8 +54,9 @@ impl Report<'_> {
     }
 
     /// The settings that no other one beats in both time and error, the fastest first.
-    fn front(&self) -> Vec<&Row> {
-        let mut front: Vec<&Row> = self.study.rows.iter().filter(|row| row.in_front).collect();
+    fn front(&self) -> Vec<&TradeoffRow> {
+        let mut front: Vec<&TradeoffRow> =
+            self.study.rows.iter().filter(|row| row.in_front).collect();
         front.sort_by(|a, b| a.median_ns.total_cmp(&b.median_ns));
         front
     }

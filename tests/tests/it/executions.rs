@@ -3,7 +3,7 @@
 
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use rayweave_accuracy::metrics::Difference;
+use rayweave_accuracy::metrics::ImageDifference;
 use rayweave_core::scene::RenderSettings;
 use rayweave_core::{Arithmetic, Execution, Formulas, Lanes, Precision, Sampling, Scene};
 use rayweave_tests::picture::{difference, executions, in_tiles, plain};
@@ -94,7 +94,7 @@ fn adaptive_samples_are_near_the_lattice() {
     let full = in_tiles(&scene, (200, 200), execution, 64);
     scene.render.adaptive = true;
     let found = in_tiles(&scene, (200, 200), execution, 64);
-    let psnr = Difference::between(&full, &found).psnr();
+    let psnr = ImageDifference::between(&full, &found).psnr();
     assert!(psnr >= 50.0, "{psnr} dB");
     assert!(found != full, "nothing is interpolated");
     // What is the same everywhere is interpolated without an error.

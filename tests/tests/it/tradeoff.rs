@@ -1,8 +1,10 @@
 //! Speed against error: that the errors are those of the pictures, and that what is advised follows
 //! from them.
 
-use rayweave_accuracy::Difference;
-use rayweave_accuracy::tradeoff::{Experiment, Reference, Row, Setting, Study};
+use rayweave_accuracy::ImageDifference;
+use rayweave_accuracy::tradeoff::{
+    Reference, Setting, TradeoffExperiment, TradeoffRow, TradeoffStudy,
+};
 use rayweave_contract::{Image, Work};
 use rayweave_core::{Sampling, Scene};
 use rayweave_measure::Protocol;
@@ -16,11 +18,13 @@ fn render(work: &dyn Work) -> Result<Image, String> {
 }
 
 /// Of one round: nothing here is about time.
-fn study(scene: &Scene) -> Study {
+fn study(scene: &Scene) -> TradeoffStudy {
     let protocol =
         Protocol { min_rounds: 1, max_rounds: 1, budget: Duration::ZERO, goal: None, seed: 1 };
     let strategy = rayweave_registry::reference();
-    Experiment { scene, size: SIZE, strategy, protocol }.run(render, |_| ()).expect("a study")
+    TradeoffExperiment { scene, size: SIZE, strategy, protocol }
+        .run(render, |_| ())
+        .expect("a study")
 }
 
 fn picture_with(scene: &Scene, setting: Setting) -> Image {
@@ -35,26 +39,30 @@ fn each_row_is_of_its_setting() {
     let study = study(&scene);
     assert!(study.repeatable);
     assert_eq!((study.rounds, study.rows.len()), (1, 4 * (13 * 3 + 5)));
-    let truth = &study.reference.picture;
+    let truth = &study.reference.image;
     for row in &study.rows {
         let found = picture_with(&scene, row.setting);
-        assert_eq!(row.error, Difference::between(truth, &found), "{}", row.setting);
+        assert_eq!(row.error, ImageDifference::between(truth, &found), "{}", row.setting);
         let exact = Setting { arithmetic: study.rows[0].setting.arithmetic, ..row.setting };
-        let arithmetic = Difference::between(&picture_with(&scene, exact), &found).rmse;
+        let arithmetic = ImageDifference::between(&picture_with(&scene, exact), &found).rmse;
         assert_eq!(row.arithmetic_rmse, arithmetic, "{}", row.setting);
         let deep = Setting { max_reflections: scene.render.max_reflections, ..exact };
-        assert_eq!(row.sampling_rmse, Difference::between(truth, &picture_with(&scene, deep)).rmse);
+        assert_eq!(
+            row.sampling_rmse,
+            ImageDifference::between(truth, &picture_with(&scene, deep)).rmse
+        );
         assert_eq!(row.samples_ns.len(), 1);
     }
-    let beats =
-        |a: &Row, b: &Row| a.median_ns < b.median_ns && a.error.psnr() > b.error.psnr() + 0.1;
+    let beats = |a: &TradeoffRow, b: &TradeoffRow| {
+        a.median_ns < b.median_ns && a.error.psnr() > b.error.psnr() + 0.1
+    };
     for row in study.rows.iter().filter(|row| row.in_front) {
         assert!(!study.rows.iter().any(|other| beats(other, row)), "{} is beaten", row.setting);
     }
     let best = study.rows.iter().map(|row| row.error.psnr()).fold(0.0, f64::max);
     assert!(study.fastest_with(best).is_some() && study.fastest_with(best + 0.1).is_none());
     let chosen = study.fastest_with(35.0).expect("there is one");
-    let faster = |row: &&Row| row.error.psnr() >= 35.0 && row.median_ns < chosen.median_ns;
+    let faster = |row: &&TradeoffRow| row.error.psnr() >= 35.0 && row.median_ns < chosen.median_ns;
     assert!(chosen.error.psnr() >= 35.0 && study.rows.iter().find(faster).is_none());
     let own = study.report_row();
     assert_eq!((own.setting.rays_per_pixel(), own.setting.sampling), (25, Sampling::Lattice));
@@ -72,7 +80,7 @@ fn the_reference_is_the_limit() {
     let mut last = 0.0;
     for density in [2, 4, 8, 16] {
         scene.render.antialiasing = density;
-        let psnr = metrics::psnr(&model::render(&scene, SIZE.0, SIZE.1), &reference.picture);
+        let psnr = metrics::psnr(&model::render(&scene, SIZE.0, SIZE.1), &reference.image);
         assert!(psnr > last + 2.0, "{psnr} dB at a density of {density}, {last} before");
         last = psnr;
     }
@@ -91,7 +99,7 @@ fn importance_is_nearer_with_as_many_rays() {
             let own = Setting::report(scene.render.max_reflections);
             let setting = Setting { sampling, antialiasing, ..own };
             let error =
-                Difference::between(&reference.picture, &picture_with(&scene, setting)).rmse;
+                ImageDifference::between(&reference.image, &picture_with(&scene, setting)).rmse;
             (setting.rays_per_pixel(), error)
         };
         for density in [2, 3, 4] {

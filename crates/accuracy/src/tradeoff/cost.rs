@@ -5,10 +5,10 @@ use super::{Setting, Subject, ratio};
 use rayweave_core::{Arithmetic, Formulas, Precision, Scene};
 use rayweave_measure::Interval;
 
-/// Ratios of times, within a round, of pictures with 25 rays a pixel and all bounces.
+/// Ratios of times, within a round, of images with 25 rays a pixel and all bounces.
 #[derive(Clone, Copy, Debug)]
-pub struct Cost {
-    /// What is in the picture: "whole scene", or one kind of primitive alone.
+pub struct ArithmeticCost {
+    /// What is in the image: "whole scene", or one kind of primitive alone.
     pub part: &'static str,
     /// Robust formulas over the textbook's, in `f32`.
     pub robust_f32: Interval,
@@ -70,7 +70,7 @@ impl Parts {
     }
 
     /// From the times of the settings, and after them those of [`Parts::subjects`].
-    pub(super) fn costs(&self, settings: &[Setting], times: &[&[u64]]) -> Vec<Cost> {
+    pub(super) fn costs(&self, settings: &[Setting], times: &[&[u64]]) -> Vec<ArithmeticCost> {
         let report = Setting::report(settings[0].max_reflections);
         let whole = |arithmetic| {
             let place = settings.iter().position(|s| *s == Setting { arithmetic, ..report });
@@ -89,11 +89,11 @@ impl Parts {
     }
 }
 
-fn cost<'a>(part: &'static str, times: impl Fn(Arithmetic) -> &'a [u64]) -> Cost {
+fn cost<'a>(part: &'static str, times: impl Fn(Arithmetic) -> &'a [u64]) -> ArithmeticCost {
     use Formulas::{Robust, Textbook};
     use Precision::{F32, F64};
     let of = |formulas, precision| times(Arithmetic { formulas, precision });
-    Cost {
+    ArithmeticCost {
         part,
         robust_f32: ratio(of(Robust, F32), of(Textbook, F32)),
         robust_f64: ratio(of(Robust, F64), of(Textbook, F64)),

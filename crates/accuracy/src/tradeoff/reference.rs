@@ -1,4 +1,4 @@
-//! The picture that the others are measured against: the limit of the filter, nearly.
+//! The image that the others are measured against: the limit of the filter, nearly.
 
 use super::setting::{EXACT, Setting};
 use crate::metrics::rmse;
@@ -9,8 +9,8 @@ use rayweave_core::{Sampling, Scene};
 #[derive(Clone, Debug)]
 pub struct Reference {
     /// In robust `f64`, some 7,700 rays a pixel.
-    pub picture: Image,
-    /// An estimate of the picture's root mean square error: half of the difference between its
+    pub image: Image,
+    /// An estimate of the image's root mean square error: half of the difference between its
     /// halves, each with half of the rays in other places. Errors that the two have in common do
     /// not show.
     pub uncertainty: f64,
@@ -20,7 +20,7 @@ pub struct Reference {
 const HALVES: [[u32; 2]; 2] = [[32, 29], [31, 30]];
 
 impl Reference {
-    /// Of `scene` with all its bounces. `render` gives the picture of a work.
+    /// Of `scene` with all its bounces. `render` gives the image of a work.
     ///
     /// # Errors
     ///
@@ -30,18 +30,18 @@ impl Reference {
         size: (u32, u32),
         mut render: impl FnMut(&dyn Work) -> Result<Image, String>,
     ) -> Result<Self, String> {
-        let mut picture = |density| {
+        let mut image = |density| {
             let setting = setting(density, scene.render.max_reflections);
             render(&*setting.work(scene, size).map_err(|e| e.to_string())?)
         };
-        let mut half = |[a, b]: [u32; 2]| Ok::<Image, String>(mean(&picture(a)?, &picture(b)?));
+        let mut half = |[a, b]: [u32; 2]| Ok::<Image, String>(mean(&image(a)?, &image(b)?));
         let (first, second) = (half(HALVES[0])?, half(HALVES[1])?);
         let uncertainty = rmse(&first, &second) / 2.0;
-        Ok(Self { picture: mean(&first, &second), uncertainty })
+        Ok(Self { image: mean(&first, &second), uncertainty })
     }
 }
 
-/// Primary rays a pixel in a reference picture.
+/// Primary rays a pixel in a reference image.
 #[must_use]
 pub fn reference_rays_per_pixel() -> u32 {
     HALVES.as_flattened().iter().map(|&density| setting(density, 0).rays_per_pixel()).sum()

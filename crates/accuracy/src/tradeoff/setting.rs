@@ -23,7 +23,7 @@ pub struct Setting {
 /// The densities that are tried: 1 to 289 rays a pixel on the lattice.
 pub const DENSITIES: [u32; 7] = [0, 1, 2, 3, 4, 6, 8];
 
-/// The most exact arithmetic, whose pictures the others' are compared with.
+/// The most exact arithmetic, whose images the others' are compared with.
 pub const EXACT: Arithmetic = Arithmetic { formulas: Formulas::Robust, precision: Precision::F64 };
 
 /// All arithmetics, the most exact one first.

@@ -3,14 +3,14 @@
 use std::collections::HashSet;
 
 use rayweave_accuracy::oracle::INFINITE;
-use rayweave_accuracy::{Case, FAMILIES, Family, generate};
+use rayweave_accuracy::{FAMILIES, Family, HardCase, generate};
 
-fn drawn(name: &str, count: usize) -> Vec<Case> {
+fn drawn(name: &str, count: usize) -> Vec<HardCase> {
     let family = Family::named(name).expect("a family");
     [11, 12, 13].into_iter().flat_map(|seed| generate(family, seed, count)).collect()
 }
 
-fn hits(cases: &[Case]) -> usize {
+fn hits(cases: &[HardCase]) -> usize {
     cases.iter().filter(|case| case.expect.as_ref().is_some_and(|expect| expect.is_hit())).count()
 }
 

@@ -1,11 +1,11 @@
 //! Cases and outcomes as text: what is read, what is refused, and with which words.
 
-use rayweave_accuracy::{Case, Expect, Outcome, Primitive, cases, outcomes};
+use rayweave_accuracy::{Expect, HardCase, Outcome, Primitive, cases, outcomes};
 
 const PLANE: &str = r#""primitive":{"kind":"plane","point":[0,0,1],"normal":[0.0,0.0,1.0]}"#;
 const RAY: &str = r#""ray":{"origin":[0,0,0],"direction":[0,0,1]}"#;
 
-fn case(text: &str) -> Result<Case, String> {
+fn case(text: &str) -> Result<HardCase, String> {
     cases::read(text.as_bytes()).map(|mut cases| cases.remove(0)).map_err(|error| error.to_string())
 }
 
@@ -27,13 +27,13 @@ fn numbers_are_rounded_to_f32_and_may_be_named() {
         "radius":0.1000000000000001}}}}"#
     );
     let text = text.replace('\n', " ");
-    let Ok(Case { primitive: Primitive::Sphere { center, radius }, .. }) = case(&text) else {
+    let Ok(HardCase { primitive: Primitive::Sphere { center, radius }, .. }) = case(&text) else {
         panic!("{:?}", case(&text))
     };
     assert!(center[0].is_nan());
     assert_eq!((center[1], center[2], radius), (f32::INFINITY, f32::NEG_INFINITY, 0.1));
     let beyond = text.replace("0.1000000000000001", "1e39");
-    let Ok(Case { primitive: Primitive::Sphere { radius, .. }, .. }) = case(&beyond) else {
+    let Ok(HardCase { primitive: Primitive::Sphere { radius, .. }, .. }) = case(&beyond) else {
         panic!()
     };
     assert_eq!(radius, f32::INFINITY);

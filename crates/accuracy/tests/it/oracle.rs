@@ -1,19 +1,19 @@
 //! The oracle on cases that can be worked out by hand.
 
 use rayweave_accuracy::oracle::INFINITE;
-use rayweave_accuracy::{Answer, Expect, Primitive, Ray, answer};
+use rayweave_accuracy::{ExactAnswer, Expect, Primitive, Ray, answer};
 
 fn ray(origin: [f32; 3], direction: [f32; 3]) -> Ray {
     Ray { origin, direction }
 }
 
-fn trace(primitive: &Primitive, origin: [f32; 3], direction: [f32; 3]) -> Answer {
+fn trace(primitive: &Primitive, origin: [f32; 3], direction: [f32; 3]) -> ExactAnswer {
     answer(primitive, &ray(origin, direction))
 }
 
 /// Asserts a hit at these numbers, each to 40 digits, and returns whether it is decidable.
 #[track_caller]
-fn assert_hit(answer: &Answer, t: &str, point: [&str; 3], normal: [&str; 3]) -> bool {
+fn assert_hit(answer: &ExactAnswer, t: &str, point: [&str; 3], normal: [&str; 3]) -> bool {
     let number = |text: &str| text.parse().expect("a number");
     let expected = Expect::Hit {
         t: number(t),
@@ -27,7 +27,7 @@ fn assert_hit(answer: &Answer, t: &str, point: [&str; 3], normal: [&str; 3]) -> 
 
 /// Asserts a miss for this reason, and returns whether it is decidable.
 #[track_caller]
-fn assert_miss(answer: &Answer, reason: &str) -> bool {
+fn assert_miss(answer: &ExactAnswer, reason: &str) -> bool {
     assert_eq!((&answer.expect, answer.reason, answer.cond), (&Expect::Miss, reason, 0.0));
     answer.decidable
 }

@@ -8,7 +8,7 @@ use crate::progress::Share;
 use crate::{Outcome, print};
 use clap::Args;
 use rayweave_accuracy::flip;
-use rayweave_accuracy::tradeoff::{EXACT, Experiment, Setting, Study, timed};
+use rayweave_accuracy::tradeoff::{EXACT, Setting, TradeoffExperiment, TradeoffStudy, timed};
 use rayweave_contract::{Image, Plan, Work};
 use rayweave_core::Scene;
 use rayweave_measure::{Machine, Protocol};
@@ -77,7 +77,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
 
     let bar = Share::new();
     bar.show(0.0, "reference");
-    let experiment = Experiment {
+    let experiment = TradeoffExperiment {
         scene: &scene,
         size,
         strategy: rayweave_registry::reference(),
@@ -103,7 +103,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     csv.map_or(Ok(()), |file| file.finish(report.csv().as_bytes()))?;
     svg.map_or(Ok(()), |file| file.finish(report.svg()?.as_bytes()))?;
     if let (Some(folder), Some(file)) = (&arguments.pictures, reference_file) {
-        file.finish(&Format::Png.encode(&study.reference.picture)?)?;
+        file.finish(&Format::Png.encode(&study.reference.image)?)?;
         write_pictures(folder, &scene, &study, size)?;
     }
     Ok(if study.repeatable { Outcome::Passed } else { Outcome::Failed })
@@ -155,19 +155,19 @@ fn reference_file(folder: &Path) -> Result<PendingFile, String> {
 fn write_pictures(
     folder: &Path,
     scene: &Scene,
-    study: &Study,
+    study: &TradeoffStudy,
     size: (u32, u32),
 ) -> Result<(), String> {
     let write = |name: &str, picture: &Image| {
         PendingFile::create(&folder.join(name))?.finish(&Format::Png.encode(picture)?)
     };
-    let truth = &study.reference.picture;
+    let truth = &study.reference.image;
     let own = study.report_row();
     for row in study.rows.iter().filter(|row| row.in_front || row.setting == own.setting) {
         let picture = render(&*row.setting.work(scene, size).map_err(|e| e.to_string())?, size)?;
         let name = row.setting.to_string().replace(", ", "-").replace(' ', "-");
         write(&format!("{name}.png"), &picture)?;
-        write(&format!("{name}-difference.png"), &flip::picture(truth, &picture))?;
+        write(&format!("{name}-difference.png"), &flip::difference_image(truth, &picture))?;
     }
     Ok(())
 }

@@ -3,7 +3,7 @@
 use super::Report;
 use crate::csv;
 use crate::json;
-use rayweave_accuracy::tradeoff::{Cost, Row, reference_rays_per_pixel};
+use rayweave_accuracy::tradeoff::{ArithmeticCost, TradeoffRow, reference_rays_per_pixel};
 use rayweave_measure::{Interval, Machine};
 use serde::Serialize;
 
@@ -90,8 +90,8 @@ pub(super) fn csv(report: &Report<'_>) -> String {
     csv::text(report.study.rows.iter().map(entry))
 }
 
-fn entry(row: &Row) -> Entry {
-    let Row { setting, speedup, error, .. } = row;
+fn entry(row: &TradeoffRow) -> Entry {
+    let TradeoffRow { setting, speedup, error, .. } = row;
     Entry {
         formulas: setting.arithmetic.formulas.to_string(),
         precision: setting.arithmetic.precision.to_string(),
@@ -114,7 +114,7 @@ fn entry(row: &Row) -> Entry {
     }
 }
 
-fn cost(cost: &Cost) -> CostEntry {
+fn cost(cost: &ArithmeticCost) -> CostEntry {
     CostEntry {
         part: cost.part,
         robust_over_textbook_f32: cost.robust_f32,

@@ -4,7 +4,7 @@ use super::Report;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use rayweave_accuracy::metrics::psnr;
-use rayweave_accuracy::tradeoff::{ARITHMETICS, Row, Setting};
+use rayweave_accuracy::tradeoff::{ARITHMETICS, Setting, TradeoffRow};
 use rayweave_core::{Arithmetic, Sampling};
 
 /// Of the whole plot, in pixels.
@@ -125,7 +125,7 @@ fn draw_panel(
 }
 
 /// Above a point of the lattice, below one of the other sampling: the rays a pixel.
-fn label<'a>(row: &Row, color: &'a RGBColor) -> Text<'a, Point, String> {
+fn label<'a>(row: &TradeoffRow, color: &'a RGBColor) -> Text<'a, Point, String> {
     let above = row.setting.sampling == Sampling::Lattice && !row.setting.adaptive;
     let place_of_text = if above { VPos::Bottom } else { VPos::Top };
     let style =
@@ -137,12 +137,12 @@ fn label<'a>(row: &Row, color: &'a RGBColor) -> Text<'a, Point, String> {
 
 type Point = (f64, f64);
 
-fn place(row: &Row) -> Point {
+fn place(row: &TradeoffRow) -> Point {
     (row.median_ns / 1e6, row.error.rmse.max(LEAST_ERROR))
 }
 
 /// The ranges that hold every point, with some room.
-fn axes(rows: &[Row]) -> Axes {
+fn axes(rows: &[TradeoffRow]) -> Axes {
     let range = |of: fn(Point) -> f64| {
         let values = || rows.iter().map(place).map(of);
         values().fold(f64::INFINITY, f64::min) / 1.3..values().fold(0.0, f64::max) * 1.3

@@ -4,7 +4,7 @@ use super::{Report, sampling_name};
 use crate::machine;
 use crate::style::{self, interval};
 use rayweave_accuracy::metrics::psnr;
-use rayweave_accuracy::tradeoff::{Cost, Row, reference_rays_per_pixel};
+use rayweave_accuracy::tradeoff::{ArithmeticCost, TradeoffRow, reference_rays_per_pixel};
 
 const HEADER: [&str; 14] = [
     "",
@@ -31,7 +31,7 @@ const COST_HEADER: [&str; 4] =
 
 pub(super) fn text(report: &Report<'_>) -> String {
     let study = report.study;
-    let mut rows: Vec<&Row> = study.rows.iter().collect();
+    let mut rows: Vec<&TradeoffRow> = study.rows.iter().collect();
     rows.sort_by(|a, b| a.median_ns.total_cmp(&b.median_ns));
     let front = report.front();
     [
@@ -57,8 +57,8 @@ fn heading(report: &Report<'_>) -> String {
     )
 }
 
-fn cells(row: &Row) -> [String; HEADER.len()] {
-    let Row { setting, speedup, error, .. } = row;
+fn cells(row: &TradeoffRow) -> [String; HEADER.len()] {
+    let TradeoffRow { setting, speedup, error, .. } = row;
     [
         if row.in_front { "*" } else { "" }.to_owned(),
         setting.arithmetic.formulas.to_string(),
@@ -77,7 +77,7 @@ fn cells(row: &Row) -> [String; HEADER.len()] {
     ]
 }
 
-fn cost_cells(cost: &Cost) -> [String; COST_HEADER.len()] {
+fn cost_cells(cost: &ArithmeticCost) -> [String; COST_HEADER.len()] {
     [
         cost.part.to_owned(),
         interval(cost.robust_f32),
