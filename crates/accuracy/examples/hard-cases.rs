@@ -4,7 +4,7 @@ use std::io;
 use std::process::ExitCode;
 
 use clap::Parser;
-use rayweave_accuracy::{FAMILIES, Family, cases, generate};
+use rayweave_accuracy::{FAMILIES, Family, generate, json_lines};
 
 /// Hard cases of ray against primitive with their exact answers, a JSON object a line.
 #[derive(Parser)]
@@ -33,7 +33,7 @@ fn main() -> io::Result<ExitCode> {
         if options.family.is_empty() { FAMILIES.iter().collect() } else { options.family };
     let mut target = io::BufWriter::new(io::stdout().lock());
     for family in families {
-        match cases::write(&mut target, &generate(family, options.seed, options.count)) {
+        match json_lines::write(&mut target, &generate(family, options.seed, options.count)) {
             // Whoever reads has read enough.
             Err(error) if error.kind() == io::ErrorKind::BrokenPipe => break,
             result => result?,

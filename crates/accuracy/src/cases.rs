@@ -1,29 +1,25 @@
-//! The case format: one ray against one primitive, and the exact answer, a JSON object a line.
-
-mod number;
-
-use std::io::{self, BufRead, Write};
+//! The format of hard cases: one ray, one primitive and the exact answer, as a JSON object.
 
 use serde::{Deserialize, Serialize};
 
 use crate::decimal::Decimal;
-use crate::json_lines::{self, ReadError};
+use crate::number;
 
 /// One ray against one primitive.
 ///
-/// Every number of `primitive` and `ray` is an f32: a kernel in f64 widens it. Equality follows
-/// IEEE 754, so that a case with a NaN in it differs from itself.
+/// Every number of `primitive` and `ray` is an f32; a kernel in f64 widens it. Equality follows
+/// IEEE 754, so a case that contains a NaN differs from itself.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HardCase {
-    /// The family it belongs to: see [`crate::families`].
+    /// The name of its family: see [`crate::families`].
     pub family: String,
-    /// Its name, different from every other in a file.
+    /// Its id, unique in a file.
     pub id: String,
-    /// What is aimed at.
+    /// The target of the ray.
     pub primitive: Primitive,
     /// The ray.
     pub ray: Ray,
-    /// The exact answer; `None` where nobody has computed it.
+    /// The exact answer; `None` if it has not been computed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub expect: Option<Expect>,
     /// Whether a good f32 kernel must get the verdict right: see [`crate::oracle`].
@@ -32,75 +28,75 @@ pub struct HardCase {
     /// The relative condition number of `t`, 0 on a miss, 9.9e99 for infinite.
     #[serde(default)]
     pub cond: f64,
-    /// Distance to the nearest other verdict, in f32 ulps of the inputs, 9.9e99 for infinite.
+    /// The distance to the closest other verdict in f32 ulps of the inputs, 9.9e99 for infinite.
     #[serde(default)]
     pub margin: f64,
-    /// What makes it hard, for people.
+    /// A description of the difficulty, for human readers.
     #[serde(default)]
     pub note: String,
 }
 
-/// `origin + t direction`; the direction is of any length.
+/// A ray, `origin + t direction`; the direction may have any length.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ray {
-    /// Where it starts.
-    #[serde(with = "number::vector")]
+    /// The start of the ray.
+    #[serde(with = "number")]
     pub origin: [f32; 3],
-    /// Where it goes; `t` is in units of it.
-    #[serde(with = "number::vector")]
+    /// The direction; `t` is in units of it.
+    #[serde(with = "number")]
     pub direction: [f32; 3],
 }
 
-/// What a ray is aimed at.
+/// A primitive that a ray is tested against.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum Primitive {
     /// An infinite plane.
     Plane {
-        /// Any point of it.
-        #[serde(with = "number::vector")]
+        /// Any point of the plane.
+        #[serde(with = "number")]
         point: [f32; 3],
-        /// Its normal, not unit in general.
-        #[serde(with = "number::vector")]
+        /// The normal, of any length.
+        #[serde(with = "number")]
         normal: [f32; 3],
     },
     /// A sphere.
     Sphere {
-        /// Its centre.
-        #[serde(with = "number::vector")]
+        /// The centre.
+        #[serde(with = "number")]
         center: [f32; 3],
-        /// Its radius.
-        #[serde(with = "number::scalar")]
+        /// The radius.
+        #[serde(with = "number")]
         radius: f32,
     },
-    /// A triangle, edges and vertices included.
+    /// A triangle with its edges and vertices.
     Triangle {
         /// The first vertex.
-        #[serde(with = "number::vector")]
+        #[serde(with = "number")]
         a: [f32; 3],
         /// The second vertex.
-        #[serde(with = "number::vector")]
+        #[serde(with = "number")]
         b: [f32; 3],
         /// The third vertex.
-        #[serde(with = "number::vector")]
+        #[serde(with = "number")]
         c: [f32; 3],
     },
-    /// The wall of a cylinder around a vertical axis, rims included, no caps.
+    /// The wall of a cylinder around a vertical axis, with its rims and without caps.
     Cylinder {
-        /// The lower end of its axis.
-        #[serde(with = "number::vector")]
+        /// The lower end of the axis.
+        #[serde(with = "number")]
         bottom: [f32; 3],
-        /// The upper end: `bottom` but for a greater y.
-        #[serde(with = "number::vector")]
+        /// The upper end: `bottom` with a greater y.
+        #[serde(with = "number")]
         top: [f32; 3],
-        /// Its radius.
-        #[serde(with = "number::scalar")]
+        /// The radius.
+        #[serde(with = "number")]
         radius: f32,
     },
-    /// Triangles that share edges and vertices; the nearest hit of any of them counts.
+    /// Triangles that share edges and vertices; the closest hit of all counts.
     Mesh {
-        /// The three vertices of each.
-        #[serde(with = "number::triangles")]
+        /// The three vertices of each triangle.
+        #[serde(with = "number")]
         triangles: Vec<[[f32; 3]; 3]>,
     },
 }
@@ -113,29 +109,29 @@ pub enum Expect {
     Miss,
     /// The primitive is hit.
     Hit {
-        /// How far along the ray, in units of its direction.
+        /// The distance along the ray, in units of its direction.
         t: Decimal,
-        /// Where.
+        /// The point of the hit.
         point: Box<[Decimal; 3]>,
-        /// The unit normal: as given for a plane, outward for sphere and cylinder, along
-        /// `(b - a) x (c - a)` for a triangle; not turned towards the ray.
+        /// The unit normal, not turned towards the ray: as given for a plane, outward for a sphere
+        /// or cylinder, along `(b - a) x (c - a)` for a triangle.
         normal: Box<[Decimal; 3]>,
     },
-    /// A triangle of the mesh is hit, one at least.
+    /// At least one triangle of the mesh is hit.
     MeshHit {
-        /// The nearest.
+        /// The distance of the closest hit.
         t: Decimal,
     },
 }
 
 impl Expect {
-    /// Whether anything is hit.
+    /// Returns whether anything is hit.
     #[must_use]
     pub fn is_hit(&self) -> bool {
         !matches!(self, Self::Miss)
     }
 
-    /// Where on the ray, on a hit.
+    /// Returns the distance of a hit.
     #[must_use]
     pub fn t(&self) -> Option<&Decimal> {
         match self {
@@ -145,7 +141,7 @@ impl Expect {
     }
 }
 
-/// [`Expect`] as it is written.
+/// The form of [`Expect`] in JSON.
 #[derive(Default, Serialize, Deserialize)]
 struct RawExpect {
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -197,22 +193,4 @@ impl From<Expect> for RawExpect {
             Expect::MeshHit { t } => Self { min_hits: Some(1), t: Some(t), ..Self::default() },
         }
     }
-}
-
-/// Reads a file of cases. Empty lines and unknown fields are passed over.
-///
-/// # Errors
-///
-/// The first line that is no case, with its number and what was expected there.
-pub fn read(source: impl BufRead) -> Result<Vec<HardCase>, ReadError> {
-    json_lines::read(source)
-}
-
-/// Writes a file of cases.
-///
-/// # Errors
-///
-/// Those of `target`.
-pub fn write(target: impl Write, cases: &[HardCase]) -> io::Result<()> {
-    json_lines::write(target, cases)
 }

@@ -1,4 +1,4 @@
-//! Reading and writing one JSON object a line.
+//! Files of JSON lines: one object per line, read and written.
 
 use std::io::{self, BufRead, Write};
 
@@ -6,31 +6,35 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use thiserror::Error;
 
-/// Why a file of JSON lines was not read. Lines and columns count from 1.
+/// The error of reading a file of JSON lines. Lines and columns count from 1.
 #[derive(Debug, Error)]
 pub enum ReadError {
-    /// The line could not be read at all.
+    /// The system could not read the line.
     #[error("line {line}: {source}")]
     Io {
-        /// The line's number.
+        /// The number of the line.
         line: usize,
-        /// What the system said.
+        /// The error of the system.
         source: io::Error,
     },
-    /// The line is no such object as was expected.
+    /// The line is not an object of the expected form.
     #[error("line {line}, column {column}: {problem}")]
     Content {
-        /// The line's number.
+        /// The number of the line.
         line: usize,
-        /// How many bytes of it had been read; 0 where only the object as a whole is wrong.
+        /// The number of bytes read before the error; 0 where only the object as a whole is wrong.
         column: usize,
-        /// What is wrong, and what was expected.
+        /// The problem, and the expected content.
         problem: String,
     },
 }
 
-/// Reads every line as one `T`; empty lines are passed over.
-pub(crate) fn read<T: DeserializeOwned>(source: impl BufRead) -> Result<Vec<T>, ReadError> {
+/// Reads each line as one `T`, and skips empty lines.
+///
+/// # Errors
+///
+/// The first line that cannot be read as a `T`, with its number and the expected content.
+pub fn read<T: DeserializeOwned>(source: impl BufRead) -> Result<Vec<T>, ReadError> {
     let mut items = Vec::new();
     for (index, text) in source.lines().enumerate() {
         let line = index + 1;
@@ -43,7 +47,11 @@ pub(crate) fn read<T: DeserializeOwned>(source: impl BufRead) -> Result<Vec<T>, 
 }
 
 /// Writes each item on a line of its own.
-pub(crate) fn write<T: Serialize>(mut target: impl Write, items: &[T]) -> io::Result<()> {
+///
+/// # Errors
+///
+/// Those of `target`.
+pub fn write<T: Serialize>(mut target: impl Write, items: &[T]) -> io::Result<()> {
     for item in items {
         serde_json::to_writer(&mut target, item)?;
         target.write_all(b"\n")?;
@@ -51,7 +59,7 @@ pub(crate) fn write<T: Serialize>(mut target: impl Write, items: &[T]) -> io::Re
     target.flush()
 }
 
-/// The error with the place in the file instead of the place in the line's text.
+/// Replaces the place in the line's text by the place in the file.
 fn content_error(line: usize, error: &serde_json::Error) -> ReadError {
     let text = error.to_string();
     let place = format!(" at line {} column {}", error.line(), error.column());

@@ -1,6 +1,6 @@
 //! The committed cases are what the generators draw, digit for digit, and what the oracle answers.
 
-use rayweave_accuracy::{FAMILIES, Primitive, answer, cases, generate};
+use rayweave_accuracy::{FAMILIES, HardCase, Primitive, answer, generate, json_lines};
 
 /// `cargo run -p rayweave-accuracy --example hard-cases -- --seed 1977 --count 20 >
 /// corpus/hard-cases.jsonl`
@@ -12,7 +12,7 @@ const COUNT: usize = 20;
 fn the_corpus_is_drawn_anew_digit_for_digit() {
     let mut drawn = Vec::new();
     for family in &FAMILIES {
-        cases::write(&mut drawn, &generate(family, SEED, COUNT))
+        json_lines::write(&mut drawn, &generate(family, SEED, COUNT))
             .expect("a vector takes everything");
     }
     let drawn = String::from_utf8(drawn).expect("JSON is text");
@@ -24,7 +24,8 @@ fn the_corpus_is_drawn_anew_digit_for_digit() {
 
 #[test]
 fn the_corpus_is_read_and_answered_as_it_says() {
-    let cases = cases::read(CORPUS.as_bytes()).expect("the corpus is well formed");
+    let cases: Vec<HardCase> =
+        json_lines::read(CORPUS.as_bytes()).expect("the corpus is well formed");
     assert_eq!(cases.len(), FAMILIES.len() * COUNT);
     for case in &cases {
         let answer = answer(&case.primitive, &case.ray);
@@ -36,9 +37,10 @@ fn the_corpus_is_read_and_answered_as_it_says() {
 
 #[test]
 fn writing_what_was_read_gives_the_same_text() {
-    let cases = cases::read(CORPUS.as_bytes()).expect("the corpus is well formed");
+    let cases: Vec<HardCase> =
+        json_lines::read(CORPUS.as_bytes()).expect("the corpus is well formed");
     let mut written = Vec::new();
-    cases::write(&mut written, &cases).expect("a vector takes everything");
+    json_lines::write(&mut written, &cases).expect("a vector takes everything");
     assert!(written == CORPUS.as_bytes());
     let numbers =
         cases.iter().filter(|case| matches!(case.primitive, Primitive::Mesh { .. })).count();

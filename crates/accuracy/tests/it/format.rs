@@ -1,12 +1,14 @@
 //! Cases and outcomes as text: what is read, what is refused, and with which words.
 
-use rayweave_accuracy::{Expect, HardCase, Outcome, Primitive, cases, outcomes};
+use rayweave_accuracy::{Expect, HardCase, Outcome, Primitive, json_lines};
 
 const PLANE: &str = r#""primitive":{"kind":"plane","point":[0,0,1],"normal":[0.0,0.0,1.0]}"#;
 const RAY: &str = r#""ray":{"origin":[0,0,0],"direction":[0,0,1]}"#;
 
 fn case(text: &str) -> Result<HardCase, String> {
-    cases::read(text.as_bytes()).map(|mut cases| cases.remove(0)).map_err(|error| error.to_string())
+    json_lines::read(text.as_bytes())
+        .map(|mut cases| cases.remove(0))
+        .map_err(|error| error.to_string())
 }
 
 #[test]
@@ -38,7 +40,8 @@ fn numbers_are_rounded_to_f32_and_may_be_named() {
     };
     assert_eq!(radius, f32::INFINITY);
     let mut written = Vec::new();
-    cases::write(&mut written, &[case(&text).expect("a case")]).expect("a vector takes everything");
+    json_lines::write(&mut written, &[case(&text).expect("a case")])
+        .expect("a vector takes everything");
     let written = String::from_utf8(written).expect("text");
     assert!(
         written.contains(r#""center":["NaN","Infinity","-Infinity"],"radius":0.1}"#),
@@ -89,7 +92,9 @@ fn errors_say_which_line_and_what_was_expected() {
         assert!(error.starts_with("line 3, column "), "{error}");
         assert!(error.contains(problem) && !error.contains(" at line "), "{error}");
     }
-    let error = cases::read(&b"{\"family\":\"\xff\"}"[..]).expect_err("not UTF-8").to_string();
+    let error = json_lines::read::<HardCase>(&b"{\"family\":\"\xff\"}"[..])
+        .expect_err("not UTF-8")
+        .to_string();
     assert!(error.starts_with("line 1: "), "{error}");
 }
 
@@ -101,7 +106,7 @@ fn outcomes_are_read_as_written() {
 {"id":"d","hit":true,"t":"-Infinity"}
 {"id":"e","hit":true,"t":2}
 "#;
-    let found = outcomes::read(text.as_bytes()).expect("outcomes");
+    let found: Vec<Outcome> = json_lines::read(text.as_bytes()).expect("outcomes");
     let outcome = |id: &str, hit, t| Outcome { id: id.into(), hit, t };
     let expected = [
         outcome("a", true, Some(1.5)),
@@ -113,7 +118,7 @@ fn outcomes_are_read_as_written() {
     assert_eq!(found, expected);
     let mut written = Vec::new();
     let nan = outcome("f", true, Some(f64::NAN));
-    outcomes::write(&mut written, &[expected[0].clone(), expected[1].clone(), nan])
+    json_lines::write(&mut written, &[expected[0].clone(), expected[1].clone(), nan])
         .expect("a vector");
     let written = String::from_utf8(written).expect("text");
     assert_eq!(written.lines().nth(2), Some(r#"{"id":"f","hit":true,"t":"NaN"}"#));
@@ -121,8 +126,8 @@ fn outcomes_are_read_as_written() {
         written.lines().take(2).collect::<Vec<_>>(),
         text.lines().take(2).collect::<Vec<_>>()
     );
-    let error = outcomes::read(&b"{\"id\":\"a\",\"hit\":true,\"t\":\"far\"}"[..])
+    let error = json_lines::read::<Outcome>(&b"{\"id\":\"a\",\"hit\":true,\"t\":\"far\"}"[..])
         .expect_err("no number")
         .to_string();
-    assert!(error.contains("`t` is a number, \"NaN\""), "{error}");
+    assert!(error.contains("expected a number, \"NaN\""), "{error}");
 }

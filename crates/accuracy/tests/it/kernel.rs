@@ -1,12 +1,12 @@
 //! The kernel that renders against the committed hard cases.
 
-use rayweave_accuracy::{Tier, cases, kernel, score};
+use rayweave_accuracy::{HardCase, Tier, json_lines, kernel, score};
 use rayweave_core::{Arithmetic, Formulas, Precision};
 
 /// How many families exceed their thresholds.
 fn misses(formulas: Formulas, precision: Precision, tier: Tier) -> Vec<String> {
     let corpus = include_str!("../../corpus/hard-cases.jsonl");
-    let cases = cases::read(corpus.as_bytes()).expect("the corpus");
+    let cases: Vec<HardCase> = json_lines::read(corpus.as_bytes()).expect("the corpus");
     let arithmetic = Arithmetic { formulas, precision };
     let outcomes: Vec<_> = cases.iter().map(|case| kernel::outcome(case, arithmetic)).collect();
     let scores = score(&cases, &outcomes);

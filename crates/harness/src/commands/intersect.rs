@@ -5,7 +5,7 @@ use crate::options::FormulasOption;
 use crate::{Outcome, print};
 use clap::{Args, ValueEnum};
 use rayweave_accuracy::kernel::{self, Prepared};
-use rayweave_accuracy::{FamilyScore, cases, outcomes, score};
+use rayweave_accuracy::{FamilyScore, HardCase, json_lines, score};
 use rayweave_core::{Arithmetic, Precision};
 use std::fs::File;
 use std::io::{self, BufReader, Write};
@@ -41,7 +41,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let out = arguments.json.as_deref().map(PendingFile::create).transpose()?;
     let name = arguments.cases.display();
     let file = File::open(&arguments.cases).map_err(|e| format!("{name}: cannot be read: {e}"))?;
-    let cases = cases::read(BufReader::new(file)).map_err(|e| format!("{name}: {e}"))?;
+    let cases: Vec<HardCase> = json_lines::read(BufReader::new(file)).map_err(|e| format!("{name}: {e}"))?;
     let precision = match arguments.precision {
         KernelPrecision::F32 => Precision::F32,
         KernelPrecision::F64 => Precision::F64,
@@ -52,7 +52,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
         cases.iter().map(|case| Prepared::new(case, arithmetic)).collect();
     let found: Vec<_> = prepared.iter().map(Prepared::outcome).collect();
     let mut lines = Vec::new();
-    outcomes::write(&mut lines, &found)
+    json_lines::write(&mut lines, &found)
         .map_err(|e| format!("the results cannot be written: {e}"))?;
     let scores = score(&cases, &found);
     let time = |score: &FamilyScore| {
