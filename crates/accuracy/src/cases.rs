@@ -1,5 +1,6 @@
 //! The format of hard cases: one ray, one primitive and the exact answer, as a JSON object.
 
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use crate::decimal::Decimal;
@@ -45,6 +46,11 @@ pub struct Ray {
     /// The direction; `t` is in units of it.
     #[serde(with = "number")]
     pub direction: [f32; 3],
+}
+
+/// Converts a vector to double precision.
+pub(crate) fn double(vector: [f32; 3]) -> DVec3 {
+    DVec3::from_array(vector.map(f64::from))
 }
 
 /// A primitive that a ray is tested against.

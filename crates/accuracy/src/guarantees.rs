@@ -42,7 +42,7 @@ use glam::DVec3;
 use rayweave_core::Precision;
 use rayweave_core::scene::Triangle;
 
-use crate::cases::{Expect, HardCase, Primitive, Ray};
+use crate::cases::{Expect, HardCase, Primitive, Ray, double};
 use crate::decimal::Decimal;
 use crate::kernel;
 use crate::oracle::{self, DECIDABLE_MARGIN, ExactAnswer, INFINITE};
@@ -179,12 +179,11 @@ impl Inputs {
             Primitive::Cylinder { bottom, top, radius } => (vec![bottom, top], None, Some(radius)),
             Primitive::Mesh { .. } => return None,
         };
-        let vector = |components: [f32; 3]| DVec3::from_array(components.map(f64::from));
         Some(Self {
-            origin: vector(ray.origin),
-            direction: vector(ray.direction),
-            positions: positions.into_iter().map(vector).collect(),
-            normal: normal.map(vector),
+            origin: double(ray.origin),
+            direction: double(ray.direction),
+            positions: positions.into_iter().map(double).collect(),
+            normal: normal.map(double),
             radius: radius.map(f64::from),
         })
     }

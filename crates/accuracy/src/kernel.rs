@@ -1,6 +1,6 @@
-//! The tracer's own kernel, asked for its answers.
+//! The answers and the speed of the tracer's own kernel on hard cases.
 
-use crate::cases::{HardCase, Primitive};
+use crate::cases::{HardCase, Primitive, double};
 use crate::outcomes::Outcome;
 use glam::DVec3;
 use rayweave_core::scene::{
@@ -11,10 +11,10 @@ use rayweave_measure::statistics::median;
 use std::hint::black_box;
 use std::time::Instant;
 
-/// A case, ready to be asked again and again.
+/// A case prepared for repeated runs of the kernel.
 pub struct Prepared {
     id: String,
-    /// `None` where the primitive means nothing: it hits nothing.
+    /// `None` for a meaningless primitive, which is never hit.
     caster: Option<Caster>,
     origin: DVec3,
     direction: DVec3,
@@ -22,20 +22,20 @@ pub struct Prepared {
 }
 
 impl Prepared {
-    /// Of `case`. Input that means nothing, which no scene may contain, is a miss; so is every
+    /// Prepares `case`. Meaningless input, which no scene may contain, is a miss; so is every
     /// triangle without area.
     #[must_use]
     pub fn new(case: &HardCase, arithmetic: Arithmetic) -> Self {
         Self {
             id: case.id.clone(),
             caster: Caster::new(&scene_of(&case.primitive).with_arithmetic(arithmetic)).ok(),
-            origin: vector(case.ray.origin),
-            direction: vector(case.ray.direction),
+            origin: double(case.ray.origin),
+            direction: double(case.ray.direction),
             precision: arithmetic.precision,
         }
     }
 
-    /// The `t` of the nearest hit that the kernel which renders finds, in its precision.
+    /// Returns the `t` of the closest hit that the kernel finds, in its precision.
     #[must_use]
     pub fn hit(&self) -> Option<f64> {
         let hit = self.caster.as_ref()?.closest_hit(self.origin, self.direction)?;
@@ -45,7 +45,7 @@ impl Prepared {
         })
     }
 
-    /// What the kernel answers.
+    /// Returns the answer of the kernel.
     #[must_use]
     pub fn outcome(&self) -> Outcome {
         let t = self.hit();
@@ -53,20 +53,21 @@ impl Prepared {
     }
 }
 
-/// What the kernel that renders answers to `case`.
+/// Returns the answer of the kernel to `case`.
 #[must_use]
 pub fn outcome(case: &HardCase, arithmetic: Arithmetic) -> Outcome {
     Prepared::new(case, arithmetic).outcome()
 }
 
-/// Passes over the cases, of which the median counts.
+/// The number of passes over the cases; the median counts.
 const PASSES: usize = 9;
 
-/// Rays a pass, at least: some tenths of a millisecond.
+/// The minimum number of rays per pass, which take some tenths of a millisecond.
 const RAYS: usize = 4000;
 
-/// The time of a ray in nanoseconds, from origin and direction to the point and the normal of the
-/// hit, the call included; `None` without cases. The rays come one by one: a packet may be faster.
+/// Measures the time of a ray in nanoseconds, from origin and direction to the point and the normal
+/// of the hit, including the call; `None` without cases. Rays are traced singly; a packet may be
+/// faster.
 #[must_use]
 pub fn nanoseconds_per_ray(cases: &[&Prepared]) -> Option<f64> {
     if cases.is_empty() {
@@ -83,7 +84,7 @@ pub fn nanoseconds_per_ray(cases: &[&Prepared]) -> Option<f64> {
     median(&std::iter::repeat_with(pass).take(PASSES).collect::<Vec<_>>())
 }
 
-/// A scene of nothing but `primitive`.
+/// Returns a scene that contains only `primitive`.
 fn scene_of(primitive: &Primitive) -> Scene {
     let mut scene = Scene {
         camera: Camera {
@@ -102,18 +103,18 @@ fn scene_of(primitive: &Primitive) -> Scene {
         cylinders: Vec::new(),
     };
     let material = 0;
-    let triangle = |corners: [[f32; 3]; 3]| Triangle { vertices: corners.map(vector), material };
+    let triangle = |corners: [[f32; 3]; 3]| Triangle { vertices: corners.map(double), material };
     match *primitive {
         Primitive::Plane { point, normal } => {
-            scene.planes.push(Plane { point: vector(point), normal: vector(normal), material });
+            scene.planes.push(Plane { point: double(point), normal: double(normal), material });
         }
         Primitive::Sphere { center, radius } => {
-            scene.spheres.push(Sphere { center: vector(center), radius: radius.into(), material });
+            scene.spheres.push(Sphere { center: double(center), radius: radius.into(), material });
         }
         Primitive::Triangle { a, b, c } => scene.triangles.push(triangle([a, b, c])),
         Primitive::Cylinder { bottom, top, radius } => scene.cylinders.push(Cylinder {
-            bottom: vector(bottom),
-            top: vector(top),
+            bottom: double(bottom),
+            top: double(top),
             radius: radius.into(),
             material,
         }),
@@ -123,8 +124,4 @@ fn scene_of(primitive: &Primitive) -> Scene {
     }
     scene.triangles.retain(|triangle| triangle.check().is_ok());
     scene
-}
-
-fn vector(components: [f32; 3]) -> DVec3 {
-    DVec3::from_array(components.map(f64::from))
 }

@@ -1,4 +1,4 @@
-//! Cylinders.
+//! Families of cylinders.
 
 use glam::{DVec2, DVec3};
 
@@ -6,7 +6,7 @@ use super::Setup;
 use super::draw::{Draw, ray, rounded, single};
 use crate::cases::{Primitive, Ray};
 
-/// The wall of a cylinder, with the numbers that f32 has.
+/// The wall of a cylinder, with numbers rounded to f32.
 struct Wall {
     bottom: DVec3,
     height: f64,
@@ -18,7 +18,8 @@ impl Wall {
         Self { bottom: rounded(bottom), height, radius: f64::from(radius as f32) }
     }
 
-    /// A point by its direction from the axis, its distance in radii and its height in heights.
+    /// Returns a point, given its direction from the axis, its distance in radii and its height in
+    /// heights.
     fn at(&self, outward: DVec2, radii: f64, heights: f64) -> DVec3 {
         self.bottom + spread(outward * radii * self.radius, heights * self.height)
     }
@@ -34,12 +35,12 @@ impl Wall {
     }
 }
 
-/// A vector by what it is seen from above, and its height.
+/// Combines the horizontal part of a vector, in x and z, with its height.
 fn spread(flat: DVec2, y: f64) -> DVec3 {
     DVec3::new(flat.x, y, flat.y)
 }
 
-/// Neither needle nor coin: radius 0.3 to 2, height 0.5 to 4.
+/// Draws a wall of ordinary proportions: radius 0.3 to 2, height 0.5 to 4.
 fn ordinary(draw: &mut Draw, bottom: DVec3) -> Wall {
     Wall::new(bottom, draw.range(0.5, 4.0), draw.range(0.3, 2.0))
 }
@@ -56,7 +57,7 @@ pub(super) fn parallel(draw: &mut Draw, _: usize) -> Setup {
     let tilt = if draw.chance(0.1) { 0.0 } else { draw.magnitude(1e-12, 0.1) };
     let (bottom, radius, way) = (draw.center(5.0), draw.range(0.3, 2.0), draw.sign());
     let (wall, radii, start) = if tilt > 3e-6 {
-        // So tall that the ray meets the wall.
+        // The wall is tall enough for the ray to meet it.
         (
             Wall::new(bottom, draw.range(3.0, 10.0) * radius / tilt, radius),
             draw.range(0.0, 0.95),
@@ -141,14 +142,14 @@ pub(super) fn far(draw: &mut Draw, _: usize) -> Setup {
     let wall = Wall::new(bottom, radius * draw.magnitude(1.0, 10.0), radius);
     let distance = draw.magnitude(1e2, 1e7);
     let outward = draw.circle();
-    // Beside the axis, and now and then above or below the wall.
+    // Beside the axis, in some cases above or below the wall.
     let target = wall.at(outward.perp(), draw.range(-1.1, 1.1), draw.range(-0.1, 1.1));
     let origin = target + spread(outward, draw.signed_magnitude(1e-3, 1.0)) * distance * radius;
     wall.setup(draw.ray_to(origin, target), format!("distance/radius {distance:.1e}"))
 }
 
 pub(super) fn surface_exact(draw: &mut Draw, index: usize) -> Setup {
-    // Euclid's formula: two whole numbers give a vector of whole length.
+    // Euclid's formula: two integers give a vector of integer length.
     let (m, n) = (f64::from(draw.integer(2, 30)), f64::from(draw.integer(1, 30)));
     let mut offset = DVec2::new((m * m - n * n) * draw.sign(), 2.0 * m * n * draw.sign());
     if draw.chance(0.5) {
@@ -160,7 +161,7 @@ pub(super) fn surface_exact(draw: &mut Draw, index: usize) -> Setup {
     let wall = Wall::new(bottom, radius * draw.magnitude(0.5, 6.0), radius);
     let mut origin = bottom + spread(offset * unit, 0.0);
     origin.y += wall.height * draw.range(0.1, 0.9);
-    let (direction, note) = through_wall(draw, offset, index);
+    let (direction, note) = draw.through_surface(spread(offset, 0.0), index);
     wall.setup(ray(origin, direction), format!("on the wall, {note}"))
 }
 
@@ -169,16 +170,6 @@ pub(super) fn surface_round(draw: &mut Draw, index: usize) -> Setup {
     let wall = Wall::new(bottom, radius * draw.magnitude(0.3, 3.0), radius);
     let outward = draw.circle();
     let origin = wall.at(outward, 1.0, draw.range(0.1, 0.9));
-    let (direction, note) = through_wall(draw, outward, index);
+    let (direction, note) = draw.through_surface(spread(outward, 0.0), index);
     wall.setup(ray(origin, direction), format!("rounded wall point, {note}"))
-}
-
-/// A direction that leaves the wall inward and outward by turns.
-fn through_wall(draw: &mut Draw, outward: DVec2, index: usize) -> (DVec3, &'static str) {
-    let direction = draw.unit();
-    let goes_out = direction.dot(spread(outward, 0.0)) > 0.0;
-    match index % 2 {
-        0 => (if goes_out { -direction } else { direction }, "inward"),
-        _ => (if goes_out { direction } else { -direction }, "outward"),
-    }
 }

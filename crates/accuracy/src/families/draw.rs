@@ -1,16 +1,16 @@
-//! Random numbers, vectors and rays, the same on every machine.
+//! Random numbers, vectors and rays for the families, the same on every machine.
 
 use crate::cases::Ray;
 use glam::{DVec2, DVec3};
 use rayweave_measure::random::SplitMix64;
 
-/// Draws from a stream of random numbers.
+/// A stream of random numbers, with the distributions that the families need.
 pub(super) struct Draw {
     random: SplitMix64,
 }
 
 impl Draw {
-    /// A stream of its own for each case: the family's name is mixed in by FNV-1a.
+    /// Creates the stream of one case; the FNV-1a hash of the family's name is part of the seed.
     pub(super) fn new(seed: u64, family: &str, index: usize) -> Self {
         let name = family.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
             (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
@@ -22,54 +22,55 @@ impl Draw {
         Self { random }
     }
 
-    /// Evenly in `low..high`.
+    /// Returns a number in `low..high`, uniformly distributed.
     pub(super) fn range(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.random.fraction()
     }
 
-    /// In `low..high`, both above 0, every magnitude alike.
+    /// Returns a number in `low..high`, both above 0, with a uniformly distributed logarithm.
     pub(super) fn magnitude(&mut self, low: f64, high: f64) -> f64 {
         libm::exp2(self.range(libm::log2(low), libm::log2(high)))
     }
 
-    /// The same with either sign.
+    /// Returns such a number with either sign.
     pub(super) fn signed_magnitude(&mut self, low: f64, high: f64) -> f64 {
         self.sign() * self.magnitude(low, high)
     }
 
-    /// A whole number in `low..=high`.
+    /// Returns an integer in `low..=high`.
     pub(super) fn integer(&mut self, low: i32, high: i32) -> i32 {
         self.range(f64::from(low), f64::from(high) + 1.0).floor() as i32
     }
 
-    /// True in `share` of all cases.
+    /// Returns true in `share` of all cases.
     pub(super) fn chance(&mut self, share: f64) -> bool {
         self.range(0.0, 1.0) < share
     }
 
-    /// 1 or -1.
+    /// Returns 1 or -1.
     pub(super) fn sign(&mut self) -> f64 {
         if self.chance(0.5) { 1.0 } else { -1.0 }
     }
 
-    /// In the cube of `-half..half`.
+    /// Returns a point in the cube of `-half..half`.
     pub(super) fn within(&mut self, half: f64) -> DVec3 {
         let mut coordinate = || self.range(-half, half);
         DVec3::new(coordinate(), coordinate(), coordinate())
     }
 
-    /// With coordinates that are multiples of `step` up to `steps` of them.
+    /// Returns a vector whose coordinates are multiples of `step`, up to `steps` of them.
     pub(super) fn lattice(&mut self, steps: i32, step: f64) -> DVec3 {
         let mut coordinate = || f64::from(self.integer(-steps, steps)) * step;
         DVec3::new(coordinate(), coordinate(), coordinate())
     }
 
-    /// 0 in half of the cases, where f32 subtracts the centre exactly; else within the cube.
+    /// Returns 0 in half of the cases, where f32 subtracts the centre exactly, else a point in the
+    /// cube.
     pub(super) fn center(&mut self, half: f64) -> DVec3 {
         if self.chance(0.5) { DVec3::ZERO } else { self.within(half) }
     }
 
-    /// A unit vector, evenly over the sphere.
+    /// Returns a unit vector, uniformly distributed over the sphere.
     pub(super) fn unit(&mut self) -> DVec3 {
         loop {
             let vector = self.within(1.0);
@@ -79,13 +80,13 @@ impl Draw {
         }
     }
 
-    /// A unit vector in the plane, evenly over the circle.
+    /// Returns a unit vector in the plane, uniformly distributed over the circle.
     pub(super) fn circle(&mut self) -> DVec2 {
         let angle = self.range(0.0, std::f64::consts::TAU);
         DVec2::new(libm::cos(angle), libm::sin(angle))
     }
 
-    /// A unit vector at a right angle to `axis`.
+    /// Returns a unit vector perpendicular to `axis`.
     pub(super) fn across(&mut self, axis: DVec3) -> DVec3 {
         loop {
             let across = self.unit().cross(axis);
@@ -95,7 +96,7 @@ impl Draw {
         }
     }
 
-    /// In the cube of `-5..5`, 1 or more away from `target`.
+    /// Returns a point in the cube of `-5..5`, at a distance of 1 or more from `target`.
     pub(super) fn away_from(&mut self, target: DVec3) -> DVec3 {
         loop {
             let point = self.within(5.0);
@@ -105,25 +106,38 @@ impl Draw {
         }
     }
 
-    /// From `origin`, as f32 has it, towards `target`: in half of the cases reaching it at `t` = 1,
-    /// else with a direction of unit length.
+    /// Returns a direction that crosses a surface with the normal `outward`, inward for an even
+    /// index and outward for an odd one, and the name of that side.
+    pub(super) fn through_surface(
+        &mut self,
+        outward: DVec3,
+        index: usize,
+    ) -> (DVec3, &'static str) {
+        let direction = self.unit();
+        let (inward, side) = if index % 2 == 0 { (true, "inward") } else { (false, "outward") };
+        let turned = (direction.dot(outward) > 0.0) == inward;
+        (if turned { -direction } else { direction }, side)
+    }
+
+    /// Returns the ray from `origin`, rounded to f32, towards `target`. In half of the cases it
+    /// reaches the target at `t` = 1, else its direction has unit length.
     pub(super) fn ray_to(&mut self, origin: DVec3, target: DVec3) -> Ray {
         let direction = target - rounded(origin);
         if self.chance(0.5) { ray(origin, direction) } else { ray(origin, direction.normalize()) }
     }
 }
 
-/// The ray, rounded to f32.
+/// Returns the ray, rounded to f32.
 pub(super) fn ray(origin: DVec3, direction: DVec3) -> Ray {
     Ray { origin: single(origin), direction: single(direction) }
 }
 
-/// The coordinates, rounded to f32.
+/// Returns the coordinates, rounded to f32.
 pub(super) fn single(vector: DVec3) -> [f32; 3] {
     vector.as_vec3().to_array()
 }
 
-/// The vector that f32 has in place of this one.
+/// Returns the vector with its coordinates rounded to f32.
 pub(super) fn rounded(vector: DVec3) -> DVec3 {
     vector.as_vec3().as_dvec3()
 }

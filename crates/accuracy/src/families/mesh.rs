@@ -1,4 +1,4 @@
-//! Meshes whose triangles share edges and vertices bit for bit.
+//! Families of meshes whose triangles share edges and vertices bit for bit.
 
 use glam::DVec3;
 
@@ -6,7 +6,7 @@ use super::Setup;
 use super::draw::{Draw, ray, rounded, single};
 use crate::cases::{Primitive, Ray};
 
-/// Where a mesh is put: as drawn, at another scale, or far from the origin.
+/// The placement of a mesh: as drawn, at another scale, or far from the origin.
 struct Placement {
     scale: f64,
     offset: DVec3,
@@ -23,7 +23,7 @@ impl Placement {
         placement
     }
 
-    /// The point in its place, as f32 has it.
+    /// Returns the placed point, rounded to f32.
     fn put(&self, point: DVec3) -> DVec3 {
         rounded(point * self.scale + self.offset)
     }
@@ -33,7 +33,7 @@ impl Placement {
     }
 }
 
-/// The triangles, each beginning with any vertex and turning either way.
+/// Finishes a case, with each triangle starting at a random vertex and turning either way.
 fn setup(draw: &mut Draw, mut triangles: Vec<[DVec3; 3]>, ray: Ray, note: String) -> Setup {
     for triangle in &mut triangles {
         triangle.rotate_left(draw.integer(0, 2) as usize);
@@ -45,7 +45,7 @@ fn setup(draw: &mut Draw, mut triangles: Vec<[DVec3; 3]>, ray: Ray, note: String
     Setup { primitive: Primitive::Mesh { triangles }, ray, note }
 }
 
-/// Enough that none fails: every second view or so will do.
+/// The number of tries to find a suitable view. About every second view is suitable.
 const TRIES: usize = 100;
 
 pub(super) fn edge(draw: &mut Draw, index: usize) -> Setup {
@@ -59,8 +59,8 @@ pub(super) fn edge(draw: &mut Draw, index: usize) -> Setup {
     let (a, b) = (placement.put(start), placement.put(start + along));
     let target = a + (b - a) * draw.range(0.02, 0.98);
     let mut aim = || target + draw.unit() * draw.range(1.0, 9.0) * placement.scale;
-    // Seen from where the triangles lie on either side of the edge: at a silhouette, where both lie
-    // on one side, a ray past the edge is no leak.
+    // The triangles must lie on different sides of the edge, seen from the origin. At a silhouette,
+    // where both lie on one side, a ray past the edge is no leak.
     let mut origin = aim();
     for _ in 0..TRIES {
         let [one, other] = wings.map(|wing| (target - origin).dot((b - a).cross(wing - a)));
@@ -95,8 +95,8 @@ pub(super) fn vertex(draw: &mut Draw, index: usize) -> Setup {
             (0..sides).map(|side| [hub, rim[side], rim[(side + 1) % sides]]).collect::<Vec<_>>(),
         )
     };
-    // Seen from where all triangles turn the same way: where one is folded over, the hub is on the
-    // silhouette, and a ray past it is no leak.
+    // All triangles must turn the same way, seen from the origin. Where one is folded over, the hub
+    // is on the silhouette, and a ray past it is no leak.
     let (mut origin, mut triangles) = fan();
     for _ in 0..TRIES {
         let mut turns =

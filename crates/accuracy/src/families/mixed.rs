@@ -1,12 +1,12 @@
-//! Families over several kinds of primitives.
+//! Families that cover several kinds of primitives.
 
 use glam::DVec3;
 
 use super::draw::{Draw, ray, single};
 use super::{Setup, cylinder, plane, sphere, triangle};
-use crate::cases::{Primitive, Ray};
+use crate::cases::{Primitive, Ray, double};
 
-/// A control case of each kind by turns, with a direction of unit length.
+/// Draws a control case, of each kind in turn, with a direction of unit length.
 fn control(draw: &mut Draw, index: usize) -> Setup {
     let kinds = [plane::basic, sphere::basic, triangle::basic, cylinder::basic];
     let mut setup = kinds[index % 4](draw, index);
@@ -14,11 +14,7 @@ fn control(draw: &mut Draw, index: usize) -> Setup {
     setup
 }
 
-fn double(vector: [f32; 3]) -> DVec3 {
-    DVec3::from_array(vector.map(f64::from))
-}
-
-/// All positions moved by `place`, all lengths multiplied by `scale`.
+/// Moves all positions by `place` and multiplies all lengths by `scale`.
 fn moved(setup: Setup, scale: f64, place: impl Fn(DVec3) -> DVec3, note: String) -> Setup {
     let put = |position: [f32; 3]| single(place(double(position)));
     let long = |length: f32| (f64::from(length) * scale) as f32;
@@ -61,7 +57,7 @@ pub(super) fn flat_surface_exact(draw: &mut Draw, index: usize) -> Setup {
     let axis = draw.integer(0, 2) as usize;
     let direction = draw.unit();
     if index % 2 == 1 {
-        // At right angles to an axis: a coordinate that all vertices and the origin share.
+        // Perpendicular to an axis: all vertices and the origin share a coordinate.
         let level = draw.range(-5.0, 5.0);
         let corners = std::array::from_fn(|_| {
             let mut corner = draw.within(5.0);
@@ -121,7 +117,7 @@ pub(super) fn invalid(draw: &mut Draw, index: usize) -> Setup {
     setup
 }
 
-/// Puts `bad` in one place of the primitive: a position, or something else that it has.
+/// Puts `bad` into a position of the primitive, or into another of its numbers.
 fn spoil(primitive: &mut Primitive, axis: usize, bad: f32, position: bool) {
     match primitive {
         Primitive::Plane { point: at, .. } if position => at[axis] = bad,

@@ -1,4 +1,4 @@
-//! Planes.
+//! Families of planes.
 
 use glam::DVec3;
 
@@ -14,7 +14,7 @@ fn setup(point: DVec3, normal: DVec3, ray: Ray, note: String) -> Setup {
     }
 }
 
-/// A floor in some cases, else any plane.
+/// Draws the normal of a floor in some cases, else any normal.
 fn normal(draw: &mut Draw) -> DVec3 {
     if draw.chance(0.4) { DVec3::Y } else { draw.unit() }
 }

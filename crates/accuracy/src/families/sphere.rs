@@ -1,4 +1,4 @@
-//! Spheres.
+//! Families of spheres.
 
 use glam::DVec3;
 
@@ -46,7 +46,7 @@ pub(super) fn ground(draw: &mut Draw, _: usize) -> Setup {
     let (center, origin) = (level(-radius), level(height));
     let mut direction = draw.unit();
     if draw.chance(0.7) {
-        // Down, and at a grazing angle as often as not.
+        // Down, often at a grazing angle.
         direction.y = -draw.magnitude(0.01, 3.0);
     }
     let note = format!("R {radius:.1e} height {height:.1e}");
@@ -64,14 +64,14 @@ pub(super) fn behind(draw: &mut Draw, _: usize) -> Setup {
     let (center, radius) = (draw.center(5.0), draw.magnitude(0.1, 10.0));
     let away = draw.unit();
     let origin = center + away * radius * (1.0 + draw.magnitude(1e-3, 30.0));
-    // Less than 0.87 sideways and back, so that the way is outward.
+    // The added vector is shorter than 0.87, so the direction is outward.
     let direction = away + draw.within(0.5);
     setup(center, radius, ray(origin, direction), "behind the origin".into())
 }
 
 pub(super) fn surface_exact(draw: &mut Draw, index: usize) -> Setup {
     let (offset, radius) = loop {
-        // Lebesgue's identity: four whole numbers give a vector of whole length.
+        // Lebesgue's identity: four integers give a vector of integer length.
         let [m, n, p, q] = std::array::from_fn(|_| f64::from(draw.integer(-12, 12)));
         let offset =
             DVec3::new(m * m + n * n - p * p - q * q, 2.0 * (m * q + n * p), 2.0 * (n * q - m * p));
@@ -81,7 +81,7 @@ pub(super) fn surface_exact(draw: &mut Draw, index: usize) -> Setup {
     };
     let unit = libm::ldexp(1.0, draw.integer(-10, 7));
     let center = if draw.chance(0.5) { DVec3::ZERO } else { draw.lattice(1 << 11, unit) };
-    let (direction, note) = through_surface(draw, offset, index);
+    let (direction, note) = draw.through_surface(offset, index);
     setup(
         center,
         radius * unit,
@@ -94,16 +94,6 @@ pub(super) fn surface_round(draw: &mut Draw, index: usize) -> Setup {
     let (center, radius) = (draw.center(10.0), draw.magnitude(0.01, 1e3));
     let outward = draw.unit();
     let origin = rounded(center + outward * radius);
-    let (direction, note) = through_surface(draw, outward, index);
+    let (direction, note) = draw.through_surface(outward, index);
     setup(center, radius, ray(origin, direction), format!("rounded surface point, {note}"))
-}
-
-/// A direction that leaves a surface inward and outward by turns.
-fn through_surface(draw: &mut Draw, outward: DVec3, index: usize) -> (DVec3, &'static str) {
-    let direction = draw.unit();
-    let goes_out = direction.dot(outward) > 0.0;
-    match index % 2 {
-        0 => (if goes_out { -direction } else { direction }, "inward"),
-        _ => (if goes_out { direction } else { -direction }, "outward"),
-    }
 }

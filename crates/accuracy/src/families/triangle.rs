@@ -1,4 +1,4 @@
-//! Triangles.
+//! Families of triangles.
 
 use glam::DVec3;
 
@@ -10,18 +10,18 @@ fn setup([a, b, c]: [DVec3; 3], ray: Ray, note: String) -> Setup {
     Setup { primitive: Primitive::Triangle { a: single(a), b: single(b), c: single(c) }, ray, note }
 }
 
-/// A point of the triangle's plane by its weights at `b` and `c`.
+/// Returns a point of the triangle's plane, given its weights at `b` and `c`.
 fn at([a, b, c]: [DVec3; 3], at_b: f64, at_c: f64) -> DVec3 {
     a + (b - a) * at_b + (c - a) * at_c
 }
 
-/// A point inside the triangle, evenly.
+/// Draws a point inside the triangle, uniformly distributed.
 pub(super) fn inside(draw: &mut Draw, triangle: [DVec3; 3]) -> DVec3 {
     let (at_b, at_c) = (draw.range(0.0, 1.0), draw.range(0.0, 1.0));
     if at_b + at_c > 1.0 { at(triangle, 1.0 - at_b, 1.0 - at_c) } else { at(triangle, at_b, at_c) }
 }
 
-/// Inside, and in some cases beside the edge opposite to `b`.
+/// Draws a point inside the triangle, in some cases beside the edge opposite to `b`.
 fn mostly_inside(draw: &mut Draw, triangle: [DVec3; 3]) -> DVec3 {
     if draw.chance(0.75) {
         inside(draw, triangle)
@@ -30,7 +30,7 @@ fn mostly_inside(draw: &mut Draw, triangle: [DVec3; 3]) -> DVec3 {
     }
 }
 
-/// A ray from 1 or more away.
+/// Draws a ray to the target from a distance of 1 or more.
 fn aimed(draw: &mut Draw, target: DVec3) -> Ray {
     let origin = draw.away_from(target);
     draw.ray_to(origin, target)
@@ -94,14 +94,14 @@ pub(super) fn edge(draw: &mut Draw, index: usize) -> Setup {
 }
 
 pub(super) fn degenerate(draw: &mut Draw, index: usize) -> Setup {
-    // Few bits: the vertices are what they are meant to be, without rounding.
+    // The coordinates have few bits, so the vertices are exact.
     let (a, step) = (draw.lattice(512, 1.0 / 128.0), draw.lattice(256, 1.0 / 128.0));
     let mut times = || f64::from(draw.integer(-4, 4));
     let (mut triangle, note) = match index % 4 {
         0 => ([a, a, a + step], "two equal vertices"),
         1 => ([a, a, a], "point"),
         2 => ([a, a + step * times(), a + step * times()], "collinear"),
-        // All bits of f32, of which twice and four times as much has no more.
+        // All bits of f32: doubling and quadrupling are exact.
         _ => {
             let b = super::draw::rounded(draw.unit());
             ([DVec3::ZERO, b, b * if draw.chance(0.5) { -4.0 } else { 2.0 }], "collinear")
