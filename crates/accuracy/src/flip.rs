@@ -1,21 +1,23 @@
-//! FLIP (Andersson, Nilsson, Akenine-Moller et al., "FLIP: A Difference Evaluator for Alternating
-//! Images", 2020): what a person sees who flips between two images, by the authors' own program.
+//! FLIP, a measure of the difference that a person sees when flipping between two images, computed
+//! by its authors' own program (Andersson, Nilsson, Akenine-Moller et al., "FLIP: A Difference
+//! Evaluator for Alternating Images", 2020).
 
 use nv_flip::{DEFAULT_PIXELS_PER_DEGREE, FlipImageFloat, FlipImageRgb8, magma_lut};
 use rayweave_contract::Image;
 
-/// From 0, no difference to be seen, to 1 for each pixel, at the distance the authors suggest. The
-/// images are compared as they look in an 8-bit file, which is shown as sRGB.
+/// Returns the difference of each pixel, from 0 (invisible) to 1, at the viewing distance that the
+/// authors suggest. The images are compared as they look in an 8-bit file, shown as sRGB.
 pub(crate) fn map(truth: &Image, found: &Image) -> FlipImageFloat {
     nv_flip::flip(shown(truth), shown(found), DEFAULT_PIXELS_PER_DEGREE)
 }
 
+/// Returns the mean over all pixels.
 pub(crate) fn mean(map: &FlipImageFloat) -> f64 {
     let pixels = map.to_vec();
     pixels.iter().copied().map(f64::from).sum::<f64>() / pixels.len() as f64
 }
 
-/// The difference as an image: black where there is none, then violet and orange to white.
+/// Returns the difference as an image: black where there is none, then violet and orange to white.
 ///
 /// # Panics
 ///

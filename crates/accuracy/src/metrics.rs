@@ -1,74 +1,79 @@
-//! How far an image is from another, as one would see it: both are clamped to 0..=1 first, in
-//! linear light, as an 8-bit file would do. What a channel has above 1 or below 0 does not count.
+//! Measures of the difference between two images: RMSE, PSNR, FLIP and others.
+//!
+//! Channels are first clamped to 0..=1, in linear light, as in an 8-bit file. Values beyond that
+//! range do not count.
 
 use crate::flip;
 use rayweave_contract::Image;
 
-/// The error of an image. A channel that is NaN is off by 1, all there is.
+/// The difference of an image from the truth. A channel that is NaN is off by 1, the maximum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImageDifference {
-    /// The root of the mean square over all channels.
+    /// The root mean square error over all channels.
     pub rmse: f64,
-    /// The largest of a channel.
+    /// The largest error of a channel.
     pub max: f64,
     /// The share of pixels, 0..=1, with a channel that is off by more than 1/255.
     pub share_off: f64,
-    /// The mean of FLIP over the pixels, 0..=1: what a person sees who flips between the two.
+    /// The mean of FLIP over all pixels, 0..=1: see [`crate::flip`].
     pub flip: f64,
 }
 
 impl ImageDifference {
-    /// Between the truth and what was found.
+    /// Compares an image with the truth.
     ///
     /// # Panics
     ///
     /// If the images differ in size.
     #[must_use]
     pub fn between(truth: &Image, found: &Image) -> Self {
+        let size = |image: &Image| (image.width(), image.height());
+        assert_eq!(size(truth), size(found), "the images differ in size");
         let pairs = || truth.pixels().iter().zip(found.pixels());
         let off = |(a, b): &(&[f32; 3], &[f32; 3])| (0..3).any(|c| error(a[c], b[c]) > 1.0 / 255.0);
         Self {
-            rmse: rmse(truth, found),
-            max: errors(truth, found).fold(0.0, f64::max),
+            rmse: rmse(truth.pixels(), found),
+            max: errors(truth.pixels(), found).fold(0.0, f64::max),
             share_off: pairs().filter(off).count() as f64 / truth.pixels().len() as f64,
             flip: flip::mean(&flip::map(truth, found)),
         }
     }
 
-    /// Peak signal-to-noise ratio in dB for a peak of 1: infinite for equal images.
+    /// Returns the peak signal-to-noise ratio in dB for a peak of 1: infinite for equal images.
     #[must_use]
     pub fn psnr(&self) -> f64 {
         psnr(self.rmse)
     }
 }
 
-/// The root mean square error over all channels alone, as in [`ImageDifference::rmse`].
+/// Returns the root mean square error over all channels, as in [`ImageDifference::rmse`]. The pixels
+/// of the truth are `f32` or `f64`, row by row.
 ///
 /// # Panics
 ///
-/// If the images differ in size.
+/// If the two differ in their number of pixels.
 #[must_use]
-pub fn rmse(truth: &Image, found: &Image) -> f64 {
+pub fn rmse<T: Copy + Into<f64>>(truth: &[[T; 3]], found: &Image) -> f64 {
     let squares: f64 = errors(truth, found).map(|error| error * error).sum();
-    (squares / (3.0 * truth.pixels().len() as f64)).sqrt()
+    (squares / (3.0 * truth.len() as f64)).sqrt()
 }
 
-/// Of each channel.
-fn errors<'a>(truth: &'a Image, found: &'a Image) -> impl Iterator<Item = f64> + 'a {
-    let size = |image: &Image| (image.width(), image.height());
-    assert_eq!(size(truth), size(found), "the images differ in size");
-    let (truth, found) = (truth.pixels().as_flattened(), found.pixels().as_flattened());
+/// Returns the error of each channel.
+fn errors<T: Copy + Into<f64>>(truth: &[[T; 3]], found: &Image) -> impl Iterator<Item = f64> {
+    assert_eq!(truth.len(), found.pixels().len(), "the images differ in size");
+    let (truth, found) = (truth.as_flattened(), found.pixels().as_flattened());
     truth.iter().zip(found).map(|(&a, &b)| error(a, b))
 }
 
-/// The peak signal-to-noise ratio in dB that belongs to a root mean square error, for a peak of 1.
+/// Returns the peak signal-to-noise ratio in dB that corresponds to a root mean square error, for a
+/// peak of 1.
 #[must_use]
 pub fn psnr(rmse: f64) -> f64 {
     -20.0 * rmse.log10()
 }
 
-fn error(truth: f32, found: f32) -> f64 {
-    let error = (f64::from(truth).clamp(0.0, 1.0) - f64::from(found).clamp(0.0, 1.0)).abs();
+fn error(truth: impl Into<f64>, found: f32) -> f64 {
+    let error = (truth.into().clamp(0.0, 1.0) - f64::from(found).clamp(0.0, 1.0)).abs();
     if error.is_nan() { 1.0 } else { error }
 }
 
@@ -89,13 +94,13 @@ mod tests {
     const GREY: [f32; 3] = [0.5, 0.25, 1.0];
 
     #[test]
-    fn equal_pictures() {
+    fn equal_images() {
         let difference = between([GREY, [0.0; 3]], [GREY, [0.0; 3]]);
         assert_eq!(difference, ImageDifference { rmse: 0.0, max: 0.0, share_off: 0.0, flip: 0.0 });
         assert_eq!(difference.psnr(), f64::INFINITY);
     }
 
-    /// Catches a mean over pixels instead of channels, and a largest or a share of another.
+    /// Catches a mean over pixels instead of channels, and a wrong maximum or share.
     #[test]
     fn a_known_error() {
         // One channel of six off by 1/2: the mean square is 1/24.
@@ -105,6 +110,13 @@ mod tests {
         assert!(difference.flip > 0.1);
     }
 
+    /// Catches a truth that is rounded to f32.
+    #[test]
+    fn the_truth_may_have_more_digits() {
+        let below_one = 1.0 - f64::from(2.0_f32.powi(-30));
+        assert_eq!(rmse(&[[below_one; 3]; 2], &image([[1.0; 3]; 2])), 1.0 - below_one);
+    }
+
     #[test]
     fn one_step_of_a_byte_is_not_off() {
         let step = |steps: f32| [steps / 255.0, 0.0, 0.0];
@@ -112,15 +124,15 @@ mod tests {
     }
 
     #[test]
-    fn what_is_beyond_the_range_does_not_count() {
+    fn values_beyond_the_range_do_not_count() {
         let difference =
             between([[1.5, -2.0, 1.0], [1.0; 3]], [[7.0, -1.0, 1.0], [f32::INFINITY; 3]]);
         assert_eq!((difference.rmse, difference.flip), (0.0, 0.0));
     }
 
-    /// Catches a NaN that passes for black, or makes the whole figure NaN.
+    /// Catches a NaN that counts as black, or that makes the whole figure NaN.
     #[test]
-    fn nan_is_all_there_is() {
+    fn nan_is_the_largest_error() {
         let difference = between([[0.0; 3]; 2], [[f32::NAN, 0.0, 0.0], [0.0; 3]]);
         assert_eq!((difference.max, difference.share_off), (1.0, 0.5));
         assert!((difference.rmse - (1.0 / 6.0_f64).sqrt()).abs() < 1e-12);

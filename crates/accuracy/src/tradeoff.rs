@@ -1,5 +1,5 @@
-//! Speed against error: every setting of the tracer timed and held against the truth, in one
-//! interleaved run on one thread.
+//! Speed against error: times every setting of the tracer and compares its image with a reference,
+//! in one interleaved run on one thread.
 
 mod cost;
 mod front;
@@ -21,62 +21,62 @@ use rayweave_measure::{InProcessExecutor, Interval, Protocol};
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::time::Instant;
 
-/// What is studied, and how.
+/// A study of one scene: its inputs and how to measure.
 pub struct TradeoffExperiment<'a> {
-    /// The scene, whose own sampling and anti-aliasing are of no consequence.
+    /// The scene; its own sampling and anti-aliasing have no effect.
     pub scene: &'a Scene,
-    /// Width and height of the images in pixels.
+    /// The width and height of the images in pixels.
     pub size: (u32, u32),
-    /// Renders what is timed, on the caller's thread.
+    /// The strategy that renders the timed images, on the caller's thread.
     pub strategy: &'a dyn Strategy,
-    /// How long to measure.
+    /// The number of rounds and the time budget.
     pub protocol: Protocol,
 }
 
-/// What was found.
+/// The results of a study.
 #[derive(Debug)]
 pub struct TradeoffStudy {
-    /// The truth.
+    /// The reference, which counts as the truth.
     pub reference: Reference,
-    /// A row a setting.
+    /// One row per setting.
     pub rows: Vec<TradeoffRow>,
-    /// What the arithmetics cost, on the whole scene and on each kind of primitive in it.
+    /// The cost of the arithmetics, on the whole scene and on each kind of primitive in it.
     pub costs: Vec<ArithmeticCost>,
-    /// Rounds measured.
+    /// The number of measured rounds.
     pub rounds: usize,
-    /// Whether every timed image was the first of its setting, bit for bit.
+    /// Whether every timed image equalled the first one of its setting, bit for bit.
     pub repeatable: bool,
 }
 
-/// A setting, measured.
+/// The measurements of one setting.
 #[derive(Debug)]
 pub struct TradeoffRow {
     /// The setting.
     pub setting: Setting,
-    /// Times to render, one a round, in nanoseconds.
+    /// The times to render in nanoseconds, one per round.
     pub samples_ns: Vec<u64>,
-    /// Their median.
+    /// The median of these times.
     pub median_ns: f64,
-    /// The time of the lab report's own setting over this one's, within a round.
+    /// The ratio of the time of the lab report's own setting to this time, within a round.
     pub speedup: Interval,
-    /// From the truth.
+    /// The difference from the reference.
     pub error: ImageDifference,
-    /// Of that, what rounding did: root mean square from the same rays in the most exact
-    /// arithmetic.
+    /// The part that rounding causes: the root mean square difference from the same rays in the
+    /// most exact arithmetic.
     pub arithmetic_rmse: f64,
-    /// Of that, what too few rays did: the same with the scene's bounces and the most exact
-    /// arithmetic.
+    /// The part that too few rays cause: the root mean square error of this setting with all
+    /// bounces of the scene, in the most exact arithmetic.
     pub sampling_rmse: f64,
-    /// Whether no other setting is faster and as exact, or more exact and as fast.
+    /// Whether the setting is on the Pareto front: see [`pareto_front`].
     pub in_front: bool,
 }
 
 impl TradeoffStudy {
-    /// The row of the lab report's own setting.
+    /// Returns the row of the lab report's own setting.
     ///
     /// # Panics
     ///
-    /// Never: it is among the settings of every scene.
+    /// Never, because every study includes this setting.
     #[must_use]
     pub fn report_row(&self) -> &TradeoffRow {
         let deepest = self.rows[0].setting.max_reflections;
@@ -84,34 +84,32 @@ impl TradeoffStudy {
         self.rows.iter().find(is_report).expect("among the settings")
     }
 
-    /// The fastest setting whose PSNR is `psnr` dB or more.
+    /// Returns the fastest setting with a PSNR of `psnr` dB or more.
     #[must_use]
     pub fn fastest_with(&self, psnr: f64) -> Option<&TradeoffRow> {
-        fastest(self.rows.iter().filter(|row| row.error.psnr() >= psnr))
+        self.fastest(psnr, |_| true)
     }
 
-    /// The same among those with robust formulas.
+    /// Returns the fastest such setting with robust formulas.
     #[must_use]
     pub fn fastest_robust(&self, psnr: f64) -> Option<&TradeoffRow> {
-        let robust = |row: &&TradeoffRow| row.setting.arithmetic.formulas == Formulas::Robust;
-        fastest(self.rows.iter().filter(robust).filter(|row| row.error.psnr() >= psnr))
+        self.fastest(psnr, |setting| setting.arithmetic.formulas == Formulas::Robust)
     }
 
-    /// The same among those that differ from the lab report's own in their density alone.
+    /// Returns the fastest such setting that differs from the lab report's own only in its density.
     #[must_use]
     pub fn fastest_report_like(&self, psnr: f64) -> Option<&TradeoffRow> {
         let own = self.report_row().setting;
-        let like =
-            |row: &&TradeoffRow| Setting { antialiasing: own.antialiasing, ..row.setting } == own;
-        fastest(self.rows.iter().filter(like).filter(|row| row.error.psnr() >= psnr))
+        self.fastest(psnr, |&setting| Setting { antialiasing: own.antialiasing, ..setting } == own)
+    }
+
+    fn fastest(&self, psnr: f64, wanted: impl Fn(&Setting) -> bool) -> Option<&TradeoffRow> {
+        let good = |row: &&TradeoffRow| row.error.psnr() >= psnr && wanted(&row.setting);
+        self.rows.iter().filter(good).min_by(|a, b| a.median_ns.total_cmp(&b.median_ns))
     }
 }
 
-fn fastest<'a>(rows: impl Iterator<Item = &'a TradeoffRow>) -> Option<&'a TradeoffRow> {
-    rows.min_by(|a, b| a.median_ns.total_cmp(&b.median_ns))
-}
-
-/// One of the images that are timed.
+/// A timed image, with its first digest and the times measured so far.
 struct Subject<'a> {
     scene: &'a Scene,
     setting: Setting,
@@ -120,13 +118,13 @@ struct Subject<'a> {
 }
 
 impl TradeoffExperiment<'_> {
-    /// Renders the truth, then measures every setting in interleaved rounds. The warm-up gives the
-    /// errors, the rounds the times. `render` gives the image of a work, untimed; `progress` is
-    /// told what share is done, between the timed spans.
+    /// Renders the reference, then measures every setting in interleaved rounds. The warm-up yields
+    /// the errors, the rounds yield the times. `render` turns a work into an image, untimed.
+    /// `progress` receives the completed fraction, between the timed spans.
     ///
     /// # Errors
     ///
-    /// A scene that is not sound, an image that cannot be, and whatever the strategy says.
+    /// An invalid scene, an impossible image size, and errors of `render` or the strategy.
     pub fn run(
         &self,
         render: impl FnMut(&dyn Work) -> Result<Image, String>,
@@ -156,14 +154,14 @@ impl TradeoffExperiment<'_> {
             }
             subject.digest = Some(digest);
             if turn.entry < settings.len() {
-                // Of settings that differ in the arithmetic the most exact one comes first.
+                // The most exact arithmetic comes first among settings that are otherwise equal.
                 if subject.setting.arithmetic == EXACT {
                     exact = Some(image.clone());
                 }
                 let exact = exact.as_ref().unwrap_or(&image);
                 errors.push(Errors {
                     all: ImageDifference::between(&reference.image, &image),
-                    arithmetic: rmse(exact, &image),
+                    arithmetic: rmse(exact.pixels(), &image),
                 });
             }
         }
@@ -185,13 +183,13 @@ impl<'a> Subject<'a> {
     }
 }
 
-/// An image, and how long it took.
+/// An image and the time to render it.
 pub struct Timed {
-    /// What was rendered.
+    /// The image.
     pub image: Image,
-    /// Of the image.
+    /// The digest of the image.
     pub digest: Digest,
-    /// To render it.
+    /// The time to render it.
     pub nanoseconds: u64,
 }
 
@@ -199,7 +197,7 @@ pub struct Timed {
 ///
 /// # Errors
 ///
-/// A scene that is not sound, an image that cannot be, and whatever the strategy says.
+/// An invalid scene, an impossible image size, and errors of the strategy.
 pub fn timed(
     strategy: &dyn Strategy,
     setting: &Setting,
@@ -214,7 +212,7 @@ pub fn timed(
     Ok(Timed { image: executor.into_image(), digest, nanoseconds })
 }
 
-/// How far a setting's image is off.
+/// The errors of a setting's image: from the reference, and from the most exact arithmetic.
 struct Errors {
     all: ImageDifference,
     arithmetic: f64,
@@ -227,7 +225,7 @@ fn rows(settings: &[Setting], times: &[&[u64]], errors: &[Errors]) -> Vec<Tradeo
     let report = times[place(Setting::report(deepest))];
     let medians: Vec<f64> =
         times.iter().take(settings.len()).map(|times| median_ns(times)).collect();
-    // To the tenth of a decibel: less is no reason to call one better.
+    // Differences below a tenth of a decibel do not count.
     let decibels = |errors: &Errors| -(10.0 * errors.all.psnr()).round();
     let points: Vec<(f64, f64)> =
         medians.iter().zip(errors).map(|(&t, e)| (t, decibels(e))).collect();
@@ -252,7 +250,7 @@ fn median_ns(samples: &[u64]) -> f64 {
     median(&samples.iter().map(|&ns| ns as f64).collect::<Vec<_>>()).unwrap_or(f64::NAN)
 }
 
-/// As [`ratio_interval`]; of NaN without a round.
+/// Returns [`ratio_interval`], or NaN without a round.
 fn ratio(above: &[u64], below: &[u64]) -> Interval {
     let none = Interval { median: f64::NAN, low: f64::NAN, high: f64::NAN };
     ratio_interval(above, below).unwrap_or(none)

@@ -1,28 +1,29 @@
-//! What the arithmetics cost: on a whole scene, and on each kind of primitive in it.
+//! The cost of each arithmetic, on a whole scene and on each kind of primitive in it.
 
 use super::setting::ARITHMETICS;
 use super::{Setting, Subject, ratio};
 use rayweave_core::{Arithmetic, Formulas, Precision, Scene};
 use rayweave_measure::Interval;
 
-/// Ratios of times, within a round, of images with 25 rays a pixel and all bounces.
+/// Ratios of times within a round, of images with 25 rays per pixel and all bounces.
 #[derive(Clone, Copy, Debug)]
 pub struct ArithmeticCost {
-    /// What is in the image: "whole scene", or one kind of primitive alone.
+    /// The content of the image: "whole scene", or the name of one kind of primitive.
     pub part: &'static str,
-    /// Robust formulas over the textbook's, in `f32`.
+    /// Robust over textbook formulas, in `f32`.
     pub robust_f32: Interval,
-    /// The same in `f64`.
+    /// Robust over textbook formulas, in `f64`.
     pub robust_f64: Interval,
     /// `f64` over `f32`, with robust formulas.
     pub f64_robust: Interval,
 }
 
-/// The scene with one kind of primitive at a time.
+/// The scene with one kind of primitive at a time, and the name of that kind.
 pub(super) struct Parts(Vec<(&'static str, Scene)>);
 
 impl Parts {
     pub(super) fn of(scene: &Scene) -> Self {
+        let Scene { planes, spheres, triangles, cylinders, .. } = scene.clone();
         let empty = Scene {
             planes: Vec::new(),
             spheres: Vec::new(),
@@ -31,37 +32,16 @@ impl Parts {
             ..scene.clone()
         };
         let parts = [
-            (
-                "planes",
-                scene.planes.is_empty(),
-                Scene { planes: scene.planes.clone(), ..empty.clone() },
-            ),
-            (
-                "spheres",
-                scene.spheres.is_empty(),
-                Scene { spheres: scene.spheres.clone(), ..empty.clone() },
-            ),
-            (
-                "triangles",
-                scene.triangles.is_empty(),
-                Scene { triangles: scene.triangles.clone(), ..empty.clone() },
-            ),
-            (
-                "cylinders",
-                scene.cylinders.is_empty(),
-                Scene { cylinders: scene.cylinders.clone(), ..empty },
-            ),
+            ("planes", planes.len(), Scene { planes, ..empty.clone() }),
+            ("spheres", spheres.len(), Scene { spheres, ..empty.clone() }),
+            ("triangles", triangles.len(), Scene { triangles, ..empty.clone() }),
+            ("cylinders", cylinders.len(), Scene { cylinders, ..empty }),
         ];
-        Self(
-            parts
-                .into_iter()
-                .filter(|part| !part.1)
-                .map(|(name, _, scene)| (name, scene))
-                .collect(),
-        )
+        let present = parts.into_iter().filter(|&(_, count, _)| count > 0);
+        Self(present.map(|(name, _, scene)| (name, scene)).collect())
     }
 
-    /// Each part in all arithmetics, with the report's rays.
+    /// Returns each part in all arithmetics, with the rays of the lab report's own setting.
     pub(super) fn subjects(&self) -> impl Iterator<Item = Subject<'_>> {
         self.0.iter().flat_map(|(_, scene)| {
             let report = Setting::report(scene.render.max_reflections);
@@ -69,7 +49,7 @@ impl Parts {
         })
     }
 
-    /// From the times of the settings, and after them those of [`Parts::subjects`].
+    /// Computes the costs from `times`: those of the settings, then those of [`Parts::subjects`].
     pub(super) fn costs(&self, settings: &[Setting], times: &[&[u64]]) -> Vec<ArithmeticCost> {
         let report = Setting::report(settings[0].max_reflections);
         let whole = |arithmetic| {

@@ -1,7 +1,8 @@
-//! Which settings are worth choosing.
+//! The Pareto front of time and error: the settings that are worth choosing.
 
-/// For each of `points`, of time and error, whether no other one is as fast and as exact, and
-/// better in one of the two (Pareto). Of equal points all are; one with a NaN never is.
+/// Returns for each of `points`, given as time and error, whether it lies on the Pareto front: no
+/// other point is at most equal in both and less in one. Equal points lie on it together; a point
+/// with a NaN never does.
 #[must_use]
 pub fn pareto_front(points: &[(f64, f64)]) -> Vec<bool> {
     let dominates = |a: &(f64, f64), b: &(f64, f64)| a.0 <= b.0 && a.1 <= b.1 && a != b;
@@ -18,9 +19,9 @@ pub fn pareto_front(points: &[(f64, f64)]) -> Vec<bool> {
 mod tests {
     use super::*;
 
-    /// Catches a comparison that is strict where it should not be, or the reverse.
+    /// Catches a comparison that is wrongly strict, or wrongly not.
     #[test]
-    fn what_is_worse_in_nothing_is_in_front() {
+    fn points_that_no_other_dominates_are_in_front() {
         let points = [
             (1.0, 9.0),
             (2.0, 5.0),

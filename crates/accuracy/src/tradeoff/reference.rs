@@ -1,30 +1,30 @@
-//! The image that the others are measured against: the limit of the filter, nearly.
+//! The reference image, close to the limit of the filter, against which errors are measured.
 
 use super::setting::{EXACT, Setting};
 use crate::metrics::rmse;
 use rayweave_contract::{Image, Work};
 use rayweave_core::{Sampling, Scene};
 
-/// The truth, and how true it is.
+/// A reference image and an estimate of its error.
 #[derive(Clone, Debug)]
 pub struct Reference {
-    /// In robust `f64`, some 7,700 rays a pixel.
+    /// The image, in robust `f64` with some 7,700 rays per pixel.
     pub image: Image,
-    /// An estimate of the image's root mean square error: half of the difference between its
-    /// halves, each with half of the rays in other places. Errors that the two have in common do
+    /// An estimate of the root mean square error of the image: half of the difference between its
+    /// two halves, which have half of the rays each, in different places. Errors common to both do
     /// not show.
     pub uncertainty: f64,
 }
 
-/// Densities of the two halves, nearly equal: four patterns of samples that have nothing in common.
+/// The densities of the two halves: four nearly equal ones, whose sample patterns share nothing.
 const HALVES: [[u32; 2]; 2] = [[32, 29], [31, 30]];
 
 impl Reference {
-    /// Of `scene` with all its bounces. `render` gives the image of a work.
+    /// Renders the reference of `scene` with all its bounces. `render` turns a work into an image.
     ///
     /// # Errors
     ///
-    /// Those of `render`, and a scene that is not sound.
+    /// Those of `render`, and an invalid scene.
     pub fn new(
         scene: &Scene,
         size: (u32, u32),
@@ -36,12 +36,12 @@ impl Reference {
         };
         let mut half = |[a, b]: [u32; 2]| Ok::<Image, String>(mean(&image(a)?, &image(b)?));
         let (first, second) = (half(HALVES[0])?, half(HALVES[1])?);
-        let uncertainty = rmse(&first, &second) / 2.0;
+        let uncertainty = rmse(first.pixels(), &second) / 2.0;
         Ok(Self { image: mean(&first, &second), uncertainty })
     }
 }
 
-/// Primary rays a pixel in a reference image.
+/// Returns the number of primary rays per pixel in a reference image.
 #[must_use]
 pub fn reference_rays_per_pixel() -> u32 {
     HALVES.as_flattened().iter().map(|&density| setting(density, 0).rays_per_pixel()).sum()

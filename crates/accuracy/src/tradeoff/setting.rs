@@ -1,29 +1,29 @@
-//! The knobs that trade speed for error, and which positions of them are tried.
+//! The settings of the tracer that trade speed for error, and the values that a study tries.
 
 use rayweave_contract::Work;
 use rayweave_core::scene::{RenderSettings, SceneError};
 use rayweave_core::{Arithmetic, Execution, Formulas, Precision, Sampling, Scene, tracer};
 use std::fmt;
 
-/// One position of every knob.
+/// A value for every setting that trades speed for error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Setting {
-    /// Formulas and number type.
+    /// The formulas and the number type.
     pub arithmetic: Arithmetic,
-    /// Where samples lie; of no consequence for one ray a pixel.
+    /// The placement of samples; without effect for one ray per pixel.
     pub sampling: Sampling,
     /// Whether lattice points are interpolated where pixels look alike.
     pub adaptive: bool,
-    /// Density `s`, as in [`rayweave_core::scene::RenderSettings::antialiasing`].
+    /// The density `s`, as in [`rayweave_core::scene::RenderSettings::antialiasing`].
     pub antialiasing: u32,
-    /// Mirror bounces after the primary ray.
+    /// The maximum number of mirror bounces after the primary ray.
     pub max_reflections: u32,
 }
 
-/// The densities that are tried: 1 to 289 rays a pixel on the lattice.
+/// The densities that a study tries: 1 to 289 rays per pixel on the lattice.
 pub const DENSITIES: [u32; 7] = [0, 1, 2, 3, 4, 6, 8];
 
-/// The most exact arithmetic, whose images the others' are compared with.
+/// The most exact arithmetic, the standard of comparison for the others.
 pub const EXACT: Arithmetic = Arithmetic { formulas: Formulas::Robust, precision: Precision::F64 };
 
 /// All arithmetics, the most exact one first.
@@ -35,8 +35,8 @@ pub const ARITHMETICS: [Arithmetic; 4] = [
 ];
 
 impl Setting {
-    /// The lab report's own: its formulas in `f32`, 5 x 5 rays a pixel, all bounces that the scene
-    /// has.
+    /// Returns the lab report's own setting: its formulas in `f32`, 5 x 5 rays per pixel, and all
+    /// bounces of the scene.
     #[must_use]
     pub fn report(max_reflections: u32) -> Self {
         Self {
@@ -48,9 +48,9 @@ impl Setting {
         }
     }
 
-    /// Every setting that is tried on `scene`, those that differ in their arithmetic alone
-    /// together, the most exact one first; before settings of less depth come those of the scene's
-    /// own.
+    /// Returns every setting that a study tries on `scene`. Settings that differ only in their
+    /// arithmetic are adjacent, the most exact one first. Settings with the scene's own depth come
+    /// before those with less.
     #[must_use]
     pub fn all(scene: &Scene) -> Vec<Self> {
         let mut all = Vec::new();
@@ -58,13 +58,13 @@ impl Setting {
             [(Sampling::Lattice, false), (Sampling::Importance, false), (Sampling::Lattice, true)];
         for (sampling, adaptive) in patterns {
             for antialiasing in DENSITIES {
-                // One ray a pixel is the same in all; on a lattice of one step a pixel all points
-                // are centres.
+                // One ray per pixel is the same in all patterns. On a lattice with one step per
+                // pixel, all points are centres.
                 let same = sampling == Sampling::Importance || adaptive;
                 if (antialiasing == 0 && same) || (antialiasing == 1 && adaptive) {
                     continue;
                 }
-                // Adaptive samples of less depth would only repeat what the others tell of depth.
+                // The other patterns already show the effect of depth.
                 let depths = depths(scene);
                 let depths = if adaptive { &depths[..1] } else { &depths[..] };
                 for &max_reflections in depths {
@@ -82,18 +82,18 @@ impl Setting {
         all
     }
 
-    /// Primary rays a pixel.
+    /// Returns the number of primary rays per pixel.
     #[must_use]
     pub fn rays_per_pixel(&self) -> u32 {
         let Self { antialiasing, sampling, .. } = *self;
         RenderSettings { antialiasing, sampling, ..RenderSettings::default() }.rays_per_pixel()
     }
 
-    /// The work of rendering `scene` with this setting into `width` x `height` pixels.
+    /// Returns the work of rendering `scene` with this setting into `width` x `height` pixels.
     ///
     /// # Errors
     ///
-    /// A scene that is not sound.
+    /// An invalid scene.
     pub fn work(
         &self,
         scene: &Scene,
@@ -108,7 +108,7 @@ impl Setting {
     }
 }
 
-/// As many bounces as the scene has, one, none; without a mirror they are all the same.
+/// Returns the depths to try: that of the scene, 1 and 0. Without a mirror, only the first.
 fn depths(scene: &Scene) -> Vec<u32> {
     let mirrors = scene.materials.iter().any(|material| material.reflection > 0.0);
     let deepest = scene.render.max_reflections;
@@ -117,7 +117,7 @@ fn depths(scene: &Scene) -> Vec<u32> {
     depths
 }
 
-/// As in "robust f32, 25 lattice rays, 4 bounces".
+/// Formats a setting as in "robust f32, 25 lattice rays, 4 bounces".
 impl fmt::Display for Setting {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let rays = match (self.rays_per_pixel(), self.sampling) {
