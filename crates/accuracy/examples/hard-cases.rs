@@ -6,16 +6,16 @@ use std::process::ExitCode;
 use clap::Parser;
 use rayweave_accuracy::{FAMILIES, Family, generate, json_lines};
 
-/// Hard cases of ray against primitive with their exact answers, a JSON object a line.
+/// Draws hard cases of ray against primitive, with exact answers, one JSON object per line.
 #[derive(Parser)]
 struct Options {
-    /// Which cases: the same seed gives the same ones on every machine
+    /// Seed of the random numbers; the same seed gives the same cases on every machine
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// How many of each family
+    /// Number of cases per family
     #[arg(long, default_value_t = 20)]
     count: usize,
-    /// Only these families
+    /// Families to draw [default: all]
     #[arg(long, value_delimiter = ',', value_parser = known_family)]
     family: Vec<&'static Family>,
 }
@@ -34,7 +34,7 @@ fn main() -> io::Result<ExitCode> {
     let mut target = io::BufWriter::new(io::stdout().lock());
     for family in families {
         match json_lines::write(&mut target, &generate(family, options.seed, options.count)) {
-            // Whoever reads has read enough.
+            // The reader has closed the pipe.
             Err(error) if error.kind() == io::ErrorKind::BrokenPipe => break,
             result => result?,
         }

@@ -1,4 +1,4 @@
-//! Numbers of an answer: decimal digits that stand for themselves, not for the nearest float.
+//! Exact decimal numbers, in which the oracle writes its answers.
 
 use std::fmt;
 use std::str::FromStr;
@@ -8,42 +8,43 @@ use dashu_ratio::RBig;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// How many significant digits the oracle writes.
+/// The number of significant digits that the oracle writes.
 pub const DIGITS: usize = 40;
-/// Digits beyond them while a number is rounded.
+/// The number of additional digits while a number is rounded.
 const GUARD_DIGITS: usize = 25;
-/// The longest text that is read as a number.
+/// The length of the longest text that is accepted as a number, in bytes.
 const LONGEST: usize = 200;
-/// Powers of ten beyond this are no answer to a case in f32, and would fill the memory.
+/// The largest accepted power of ten. Larger ones do not occur in answers to f32 cases, and would
+/// exhaust memory.
 const LARGEST_EXPONENT: isize = 1000;
 
-/// A decimal number, exact: `0.5`, `-1.25e-34`. Compared as a number.
+/// An exact decimal number, such as `0.5` or `-1.25e-34`. Comparison is numeric.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub struct Decimal(DBig);
 
-/// A text that is no decimal number, or one that is absurdly long, large or small.
+/// The error for a text that is not a decimal number, or one that is too long, large or small.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("expected a decimal number like \"0.5\" or \"-1.25e-34\", found {0:?}")]
 pub struct NotDecimal(String);
 
 impl Decimal {
-    /// The number, rounded to [`DIGITS`] significant digits.
+    /// Rounds a number to [`DIGITS`] significant digits.
     pub(crate) fn rounded(number: &RBig) -> Self {
-        // The quotient's own rounding, of a few units in the last place, must not reach the digits
-        // kept.
+        // The rounding of the quotient, of a few units in the last place, must not reach the digits
+        // that are kept.
         let longer: DBig = number.to_float(DIGITS + GUARD_DIGITS).value();
         Self(longer.with_precision(DIGITS).value())
     }
 
-    /// The number as a fraction, without rounding.
+    /// Returns the number as a fraction, without rounding.
     #[must_use]
     pub fn exact(&self) -> RBig {
-        // Only an infinite number has no fraction, and none is ever read or computed.
+        // Only an infinite number is not a fraction. None is ever read or computed.
         RBig::try_from(self.0.clone()).unwrap_or_default()
     }
 
-    /// The nearest `f64`.
+    /// Returns the nearest `f64`.
     #[must_use]
     pub fn to_f64(&self) -> f64 {
         self.exact().to_f64().value()
@@ -97,7 +98,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn digits_come_back_as_they_were() {
+    fn digits_are_preserved() {
         for text in
             ["0", "4", "-0.5", "1.414213562373095048801688724209698078570", "1.25e-34", "-7e60"]
         {
@@ -110,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_is_refused() {
+    fn invalid_numbers_are_rejected() {
         for text in
             ["", "inf", "NaN", "1.2.3", "1e999999999999", "1e-2000", "zero", &"1".repeat(300)]
         {

@@ -1,31 +1,31 @@
-//! How right is it: images against the truth, and single rays against exact answers. Prints
-//! nothing.
+//! Accuracy of the tracer: images compared with a reference, and single rays with exact answers.
 //!
-//! * [`tradeoff`]: every setting of the tracer, its time and its error;
-//! * [`metrics`]: how far an image is from another, and [`flip`], as one sees it.
+//! This crate prints nothing. Images:
+//!
+//! * [`tradeoff`]: times every setting of the tracer and measures its error;
+//! * [`metrics`]: measures of the difference between two images, and [`flip`], the visible one.
 //!
 //! Hard cases of rays and primitives:
 //!
-//! * [`cases`]: the case format, JSON lines read and written;
-//! * [`oracle`]: the exact answer to a case, by rational arithmetic;
+//! * [`cases`] and [`outcomes`]: the cases and the answers of a kernel, in files of [`json_lines`];
+//! * [`oracle`]: computes the exact answer to a case by rational arithmetic;
 //! * [`families`]: seeded generators of 36 families of hard cases, with their answers;
-//! * [`kernel`]: what the tracer's own answers;
-//! * [`outcomes`]: what a kernel answered, one JSON line a case;
-//! * [`mod@score`]: verdicts, errors in ulps and leaks a family, and [`thresholds`] for them;
-//! * [`guarantees`]: what holds for any ray and primitive, for fuzzing.
+//! * [`kernel`]: runs the tracer's own kernel on a case;
+//! * [`mod@score`]: verdicts, errors in ulps and leaks per family, and their [`thresholds`];
+//! * [`guarantees`]: the properties that hold for any ray and primitive, for fuzzing.
 //!
-//! What is right:
+//! The definition of a hit:
 //!
-//! * a ray is `origin + t direction`, the direction of any length, `t` in units of it;
-//! * a hit needs `t > 0`, and the smallest such `t` counts; a ray that starts on a surface does not
-//!   hit it there;
-//! * a plane and a triangle have two sides; a ray in their plane misses them; a triangle's edges
-//!   and vertices belong to it, and a triangle without area is never hit;
-//! * a sphere is touched by its tangents;
-//! * a cylinder is a wall without caps around an axis parallel to y, both rims included; a ray
-//!   parallel to the axis misses it;
-//! * a number that is not finite, a direction or a normal of zero, a radius of 0 or less, a
-//!   cylinder upside down or askew is a miss.
+//! * A ray is `origin + t direction`. The direction may have any length, and `t` is in units of it.
+//! * A hit needs `t > 0`, and the smallest such `t` counts. A ray that starts on a surface does not
+//!   hit it there.
+//! * A plane and a triangle have two sides, and a ray in their plane misses them. The edges and
+//!   vertices of a triangle belong to it. A triangle without area is never hit.
+//! * A sphere is hit by its tangents.
+//! * A cylinder is a wall without caps around an axis parallel to y, and includes both rims. A ray
+//!   parallel to the axis misses it.
+//! * Input that contains one of these is a miss: a number that is not finite, a direction or a
+//!   normal of zero, a radius of 0 or less, a cylinder upside down or askew.
 
 pub mod cases;
 pub mod decimal;

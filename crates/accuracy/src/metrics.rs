@@ -46,8 +46,8 @@ impl ImageDifference {
     }
 }
 
-/// Returns the root mean square error over all channels, as in [`ImageDifference::rmse`]. The pixels
-/// of the truth are `f32` or `f64`, row by row.
+/// Returns the root mean square error over all channels, as in [`ImageDifference::rmse`]. The
+/// pixels of the truth are `f32` or `f64`, row by row.
 ///
 /// # Panics
 ///

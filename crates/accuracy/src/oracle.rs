@@ -1,25 +1,24 @@
-//! The exact answer to a case.
+//! The oracle: computes the exact answer to a case by rational arithmetic.
 //!
 //! Every input is an f32, hence a fraction, so the true answer is a mathematical fact. All verdicts
 //! (hit or miss, which root, inside which edge) are signs of fractions or of `p + s sqrt(d)` with
-//! fractions `p`, `s` and `d`, and are decided by rational arithmetic alone. The numbers of the
-//! answer are such expressions too; only to be written down are their roots taken, to 512 bits.
+//! fractions `p`, `s` and `d`. Rational arithmetic alone decides them. The numbers of the answer
+//! are such expressions too; their roots are computed, to 512 bits, only to write them down.
 //!
-//! How hard a case is for a kernel in f32 is said by three more numbers. Every kernel begins with
-//! the differences of positions (from origin to centre, to vertex ...), so the inputs `x_i` that
-//! count are these differences, the direction and the radius.
+//! Three more numbers state how hard a case is for a kernel in f32. Every kernel begins with the
+//! differences of positions (from origin to centre, to vertex ...), so the relevant inputs `x_i`
+//! are these differences, the direction and the radius.
 //!
 //! * `cond`, the relative condition number of `t`: `sum_i |x_i dt/dx_i| / t`. A backward stable
 //!   kernel errs by a small multiple of `cond` ulps (Higham, "Accuracy and Stability of Numerical
 //!   Algorithms", 2nd ed., section 1.6).
-//! * `margin`: a verdict changes where some `g(x) = 0`; the distance from there, to first order, is
-//!   `|g| / sum_i |x_i dg/dx_i|`, and is given in ulps of 2^-23. A hit is as far from a miss as the
-//!   nearest of its boundaries; a miss with several reasons is as far from a hit as the best of
-//!   them.
-//! * `decidable`: the margin is 4 or more. It is infinite where f32 arithmetic computes a `g` of 0
-//!   without rounding, and where a triangle has no area: neither leaves a kernel an excuse. A hit
-//!   of a mesh is always decidable: of triangles that share an edge, rounding may choose either,
-//!   but one.
+//! * `margin`: a verdict changes where some `g(x) = 0`. The distance from there, to first order, is
+//!   `|g| / sum_i |x_i dg/dx_i|`, in ulps of 2^-23. The margin of a hit is that of its closest
+//!   boundary. The margin of a miss with several reasons is the largest of theirs.
+//! * `decidable`: the margin is 4 or more. The margin is infinite where f32 arithmetic computes a
+//!   `g` of 0 without rounding, and where a triangle has no area, so a kernel must be right there.
+//!   A hit of a mesh is always decidable: rounding may choose either of two triangles that share an
+//!   edge, but it must choose one.
 
 mod cylinder;
 mod exact;
@@ -33,34 +32,34 @@ use crate::cases::{Expect, Primitive, Ray};
 
 use exact::{Surd, Vector};
 
-/// From which margin on a good f32 kernel must be right, in ulps.
+/// The smallest margin, in ulps, at which a good f32 kernel must be right.
 pub const DECIDABLE_MARGIN: f64 = 4.0;
-/// What stands for infinity in [`ExactAnswer::cond`] and [`ExactAnswer::margin`], as JSON has none.
+/// The value for infinity in [`ExactAnswer::cond`] and [`ExactAnswer::margin`], which JSON lacks.
 pub const INFINITE: f64 = 9.9e99;
 
-/// The exact answer to a case, and how hard it is.
+/// The exact answer to a case, and the difficulty of the case.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExactAnswer {
     /// The answer.
     pub expect: Expect,
     /// The relative condition number of `t`, to four digits, at most [`INFINITE`]; 0 on a miss.
     pub cond: f64,
-    /// Distance to the nearest other verdict in f32 ulps, to four digits, at most [`INFINITE`].
+    /// The distance to the closest other verdict in f32 ulps, to four digits, at most [`INFINITE`].
     pub margin: f64,
     /// Whether a good f32 kernel must get the verdict right.
     pub decidable: bool,
-    /// Why it is a miss; empty on a hit.
+    /// The reason for a miss; empty on a hit.
     pub reason: &'static str,
 }
 
-/// What was found out about one ray and one primitive.
+/// The result for one ray and one primitive, before rounding.
 struct Trace {
     hit: Option<Hit>,
     margin: f64,
     reason: &'static str,
 }
 
-/// Where a ray hits.
+/// The hit of a ray.
 struct Hit {
     t: Surd,
     cond: f64,
@@ -77,8 +76,8 @@ impl Trace {
     }
 }
 
-/// The exact answer to a ray against a primitive. Defined for every input, finite or not: what is
-/// right in the odd cases is said at the head of this crate.
+/// Returns the exact answer to a ray against a primitive. It is defined for every input, finite or
+/// not; the documentation of the crate states the rules for unusual input.
 #[must_use]
 pub fn answer(primitive: &Primitive, ray: &Ray) -> ExactAnswer {
     let mesh = matches!(primitive, Primitive::Mesh { .. });
@@ -95,7 +94,7 @@ pub fn answer(primitive: &Primitive, ray: &Ray) -> ExactAnswer {
     }
 }
 
-/// `None` where a number is not finite.
+/// Returns `None` if a number is not finite.
 fn trace_finite(primitive: &Primitive, ray: &Ray) -> Option<(Trace, Expect)> {
     let (origin, direction) = (exact::vector(ray.origin)?, exact::vector(ray.direction)?);
     let trace = if exact::is_zero(&direction) {
@@ -137,30 +136,30 @@ fn trace_primitive(primitive: &Primitive, origin: &Vector, direction: &Vector) -
     })
 }
 
-/// The nearest of the triangles that are hit. One with a number that is not finite is none.
+/// Returns the closest hit of all triangles. A triangle with a non-finite number is left out.
 fn trace_mesh(triangles: &[[[f32; 3]; 3]], origin: &Vector, direction: &Vector) -> Trace {
-    let mut nearest = Trace::miss("no triangle", f64::INFINITY);
+    let mut closest = Trace::miss("no triangle", f64::INFINITY);
     for &[a, b, c] in triangles {
         let triangle = Primitive::Triangle { a, b, c };
         let Some(trace) = trace_primitive(&triangle, origin, direction) else { continue };
-        match (&nearest.hit, &trace.hit) {
-            (None, None) => nearest.margin = nearest.margin.min(trace.margin),
-            (None, Some(_)) => nearest = trace,
-            (Some(old), Some(new)) if new.t.is_less_rational(&old.t) => nearest = trace,
+        match (&closest.hit, &trace.hit) {
+            (None, None) => closest.margin = closest.margin.min(trace.margin),
+            (None, Some(_)) => closest = trace,
+            (Some(old), Some(new)) if new.t.is_less_rational(&old.t) => closest = trace,
             (Some(_), _) => {}
         }
     }
-    nearest
+    closest
 }
 
-/// Four significant digits are enough to judge by, and short to write.
+/// Rounds to four significant digits, which are short to write and enough to judge by.
 fn four_digits(value: f64) -> f64 {
     let value = value.min(INFINITE);
-    // What was written as a number is one.
+    // A formatted number always parses.
     format!("{value:.3e}").parse().unwrap_or(value)
 }
 
-/// `n / |n|`.
+/// Returns `n / |n|`.
 fn unit(n: &Vector) -> [Surd; 3] {
     let length_squared = exact::dot(n, n);
     n.each_ref().map(|component| Surd::root(component / &length_squared, length_squared.clone()))

@@ -1,4 +1,4 @@
-//! How right a kernel's outcomes are, a family at a time.
+//! The score of a kernel: compares its outcomes with the exact answers, family by family.
 
 use std::collections::HashMap;
 
@@ -7,37 +7,37 @@ use dashu_ratio::RBig;
 use crate::cases::{Expect, HardCase};
 use crate::outcomes::Outcome;
 
-/// Bits of an f32 behind the first.
+/// The number of bits of an f32 after the first.
 const FRACTION_BITS: isize = 23;
 /// The exponent of the smallest normal f32.
 const SMALLEST_EXPONENT: isize = -126;
 
-/// The cases of one family, and what a kernel made of them.
+/// The score of a kernel on the cases of one family.
 ///
-/// An outcome is wrong where hit or miss is, where it is missing, and where a hit has no `t`, one
-/// that is not finite, or one of 0 or less. Errors are those of `t`, in f32 ulps of the true `t`,
-/// on decidable hits that the kernel hit too; `None` where there are none.
+/// An outcome is wrong if it is absent, if hit or miss is wrong, or if a hit has no finite `t`
+/// above 0. Errors are those of `t`, in f32 ulps of the true `t`, on decidable hits that the kernel
+/// found too; `None` where there are none.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FamilyScore {
-    /// Its name.
+    /// The name of the family.
     pub family: String,
-    /// How many cases have an answer.
+    /// The number of cases with an answer.
     pub cases: usize,
-    /// How many of them are decidable; the others are borderline.
+    /// The number of decidable cases; the others are borderline.
     pub decidable: usize,
-    /// Wrong outcomes on decidable cases.
+    /// The number of wrong outcomes on decidable cases.
     pub wrong: usize,
-    /// Wrong outcomes on borderline cases.
+    /// The number of wrong outcomes on borderline cases.
     pub wrong_borderline: usize,
-    /// How many errors were measured.
+    /// The number of measured errors.
     pub measured: usize,
-    /// Errors of more than a thousandth of `t`: the wrong root, or noise.
+    /// The number of errors above a thousandth of `t`: the wrong root, or noise.
     pub gross: usize,
-    /// Hits with a `t` that is missing or not finite.
+    /// The number of hits with a `t` that is absent or not finite.
     pub non_finite: usize,
-    /// How many cases are meshes that must be hit.
+    /// The number of meshes that must be hit.
     pub meshes: usize,
-    /// Meshes that were not hit: the ray leaked between two triangles.
+    /// The number of meshes that were not hit: the ray leaked between two triangles.
     pub leaks: usize,
     /// The median error.
     pub p50: Option<f64>,
@@ -51,16 +51,16 @@ pub struct FamilyScore {
 }
 
 impl FamilyScore {
-    /// How many cases are borderline.
+    /// Returns the number of borderline cases.
     #[must_use]
     pub fn borderline(&self) -> usize {
         self.cases - self.decidable
     }
 }
 
-/// Scores outcomes family by family, in the order in which the families come. Cases without an
-/// answer are left out; of several outcomes with one id the last counts, and an unknown id does
-/// not.
+/// Scores outcomes family by family, in the order of their first cases. Cases without an answer are
+/// left out. If several outcomes have the same id, the last counts; outcomes with an unknown id do
+/// not count.
 #[must_use]
 pub fn score(cases: &[HardCase], outcomes: &[Outcome]) -> Vec<FamilyScore> {
     let outcomes: HashMap<&str, &Outcome> =
@@ -68,7 +68,7 @@ pub fn score(cases: &[HardCase], outcomes: &[Outcome]) -> Vec<FamilyScore> {
     let mut tallies: Vec<Tally> = Vec::new();
     for case in cases {
         let Some(expect) = &case.expect else { continue };
-        // Cases of a family mostly stand together: the search ends at once.
+        // Cases of a family are mostly adjacent, so the search ends at once.
         let known = tallies.iter().rposition(|tally| tally.score.family == case.family);
         let place = known.unwrap_or_else(|| {
             tallies.push(Tally::new(&case.family));
@@ -79,7 +79,7 @@ pub fn score(cases: &[HardCase], outcomes: &[Outcome]) -> Vec<FamilyScore> {
     tallies.into_iter().map(Tally::finish).collect()
 }
 
-/// A family's score while its cases are counted.
+/// The score of a family while its cases are counted.
 struct Tally {
     score: FamilyScore,
     errors: Vec<f64>,
@@ -125,7 +125,7 @@ impl Tally {
 
     fn finish(mut self) -> FamilyScore {
         self.errors.sort_by(f64::total_cmp);
-        // The smallest error that at least this share of all does not exceed.
+        // The smallest error that at least this share of all errors does not exceed.
         let quantile = |share: f64| {
             let rank = (share * self.errors.len() as f64).ceil() as usize;
             self.errors.get(rank.max(1) - 1).copied()
@@ -140,14 +140,14 @@ impl Tally {
     }
 }
 
-/// How far a `t` is from the true one.
+/// The error of a `t`.
 struct Error {
     ulps: f64,
     gross: bool,
 }
 
 impl Error {
-    /// Without rounding but of the result.
+    /// Computes the error; only the result is rounded.
     fn of(t: f64, expected: &RBig) -> Self {
         let size = |value: RBig| if value < RBig::ZERO { -value } else { value };
         let error = size(RBig::try_from(t).unwrap_or_default() - expected);
@@ -159,7 +159,7 @@ impl Error {
     }
 }
 
-/// The distance between the f32 numbers around a number of this size, were there no largest f32.
+/// Returns the spacing of f32 numbers at this size, as if there were no largest f32.
 fn ulp(size: &RBig) -> RBig {
     let power = |exponent: isize| RBig::from(2).pow(exponent);
     // The f64 logarithm may be off by one beside a power of two.
@@ -204,7 +204,8 @@ mod tests {
         assert!(Error::of(998.5, &rational("1000")).gross);
     }
 
-    /// A case of family `f` whose answer is `t`, or a miss; for a mesh if its id begins with `m`.
+    /// Returns a case of family `f` with the answer `t`, or a miss. It is a mesh if its id begins
+    /// with `m`.
     fn case(id: &str, t: Option<&str>, decidable: bool) -> HardCase {
         let decimal = |text: &str| text.parse::<crate::Decimal>().expect("a number");
         let vector = || Box::new(["0", "0", "0"].map(decimal));

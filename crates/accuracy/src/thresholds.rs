@@ -10,8 +10,8 @@ pub enum Tier {
     /// f32 with one rounding per operation. It allows no wrong verdict on a decidable case, no
     /// leak, and the error of a backward stable formula: 2 ulps per unit of the condition number.
     Plain32,
-    /// f32 with error-free transforms (two-sum, two-product). It allows the same, and 6 ulps at most
-    /// wherever compensation removes the condition number: see [`Tier::thresholds`].
+    /// f32 with error-free transforms (two-sum, two-product). It allows the same, and at most
+    /// 6 ulps wherever compensation removes the condition number: see [`Tier::thresholds`].
     Compensated32,
     /// f64. It allows no wrong verdict, not even on borderline cases, and an error of `t` of 0.51
     /// ulps of f32: rounded to f32, `t` is the nearest number, except for ties.

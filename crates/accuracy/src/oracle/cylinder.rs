@@ -1,4 +1,5 @@
-//! Cylinder: the nearest root ahead of the circle seen from above, at a height between the rims.
+//! Exact intersection with a cylinder: the closest root ahead of the origin on the circle seen from
+//! above, at a height between the rims.
 
 use dashu_ratio::RBig;
 
@@ -7,13 +8,13 @@ use super::exact::{Surd, Vector, float, sign};
 use super::margin;
 use super::quadric::{Quadric, is_ahead};
 
-/// One condition on a root, and how far it is from changing.
+/// A condition on a root, and its margin.
 struct Condition {
     holds: bool,
     margin: f64,
 }
 
-/// `axis` are its lower and its upper end.
+/// Intersects a ray with a cylinder; `axis` holds its lower and its upper end.
 pub(super) fn trace(
     axis: &[Vector; 2],
     radius: &RBig,
@@ -37,11 +38,11 @@ pub(super) fn trace(
         return Trace::miss("beside", quadric.approach_margin());
     }
     let side_margin = quadric.side_margin();
-    // What was decided before the root at hand was looked at.
+    // The margin of the decisions on earlier roots.
     let mut so_far = f64::INFINITY;
     for t in quadric.roots() {
         let cond = quadric.condition(&t);
-        // How far up the wall, from either rim, in its own direction.
+        // The condition that the hit is on the inner side of a rim.
         let within_rim = |start: RBig, d_y: &RBig| {
             let height = t.times(d_y).plus(&start);
             Condition {
@@ -66,8 +67,8 @@ pub(super) fn trace(
     Trace::miss("behind, above or below", so_far)
 }
 
-/// The margin of the sign of `height = start + t d_y`: `start` and `d_y` are inputs, and `t`
-/// follows its own with the condition number `cond`.
+/// Returns the margin of the sign of `height = start + t d_y`. Here `start` and `d_y` are inputs,
+/// and `t` depends on its own inputs with the condition number `cond`.
 fn rim_margin(height: &Surd, start: &RBig, d_y: &RBig, t: &Surd, cond: f64) -> f64 {
     let climb = t.times(d_y).size();
     let follows = if climb == 0.0 { 0.0 } else { climb * (1.0 + cond) };

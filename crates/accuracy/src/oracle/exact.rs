@@ -1,4 +1,4 @@
-//! Rational numbers and vectors, and numbers with one square root in them.
+//! Exact arithmetic: rational numbers and vectors, and numbers with one square root.
 
 use std::cmp::Ordering;
 
@@ -13,15 +13,15 @@ type Real = FBig<HalfEven, 2>;
 /// Three exact coordinates.
 pub(super) type Vector = [RBig; 3];
 
-/// 154 decimal digits: 40 are asked for, and no more than a handful of operations round.
+/// The precision in bits: 154 decimal digits, for 40 digits after a few rounded operations.
 const BITS: usize = 512;
 
-/// The fraction that an f32 is; `None` for one that is not finite.
+/// Returns the exact value of an f32; `None` if it is not finite.
 pub(super) fn number(value: f32) -> Option<RBig> {
     RBig::try_from(value).ok()
 }
 
-/// The same for three coordinates.
+/// Returns the exact value of three coordinates; `None` if one is not finite.
 pub(super) fn vector(value: [f32; 3]) -> Option<Vector> {
     let [x, y, z] = value;
     Some([number(x)?, number(y)?, number(z)?])
@@ -31,8 +31,8 @@ fn real(value: &RBig) -> Real {
     value.to_float(BITS).value()
 }
 
-/// The nearest `f64`: for what needs a few digits only. No product of a few f32 numbers leaves its
-/// range.
+/// Returns the nearest `f64`, for uses that need a few digits only. No product of a few f32 numbers
+/// leaves its range.
 pub(super) fn float(value: &RBig) -> f64 {
     value.to_f64().value()
 }
@@ -53,7 +53,7 @@ pub(super) fn subtract(a: &Vector, b: &Vector) -> Vector {
     std::array::from_fn(|i| &a[i] - &b[i])
 }
 
-/// The terms of a dot product.
+/// Returns the terms of a dot product.
 pub(super) fn products<const N: usize>(a: &[RBig; N], b: &[RBig; N]) -> [RBig; N] {
     std::array::from_fn(|i| &a[i] * &b[i])
 }
@@ -70,12 +70,12 @@ pub(super) fn dot<const N: usize>(a: &[RBig; N], b: &[RBig; N]) -> RBig {
     sum(&products(a, b))
 }
 
-/// `sum |a_i b_i|`: what a dot product is as large as, were it not for cancellation.
+/// Returns `sum |a_i b_i|`, the size of a dot product without cancellation.
 pub(super) fn dot_of_sizes<const N: usize>(a: &[RBig; N], b: &[RBig; N]) -> RBig {
     sum_of_sizes(&products(a, b))
 }
 
-/// The two products whose difference is each component of a cross product.
+/// Returns, for each component of a cross product, the two products whose difference it is.
 pub(super) fn cross_products(a: &Vector, b: &Vector) -> [[RBig; 2]; 3] {
     [(1, 2), (2, 0), (0, 1)].map(|(i, j)| [&a[i] * &b[j], &a[j] * &b[i]])
 }
@@ -84,7 +84,7 @@ pub(super) fn cross(a: &Vector, b: &Vector) -> Vector {
     cross_products(a, b).map(|[plus, minus]| plus - minus)
 }
 
-/// `p + s sqrt(d)` with rational `p`, `s` and `d >= 0`.
+/// The number `p + s sqrt(d)` with rational `p`, `s` and `d >= 0`.
 #[derive(Clone, Debug)]
 pub(super) struct Surd {
     p: RBig,
@@ -97,7 +97,7 @@ impl Surd {
         Self { p, s: RBig::ZERO, d: RBig::ZERO }
     }
 
-    /// `s sqrt(d)`; a `d` below 0 is taken for 0.
+    /// Creates `s sqrt(d)`; a `d` below 0 counts as 0.
     pub(super) fn root(s: RBig, d: RBig) -> Self {
         Self { p: RBig::ZERO, s, d: d.max(RBig::ZERO) }
     }
@@ -110,23 +110,23 @@ impl Surd {
         Self { p: &self.p * factor, s: &self.s * factor, d: self.d.clone() }
     }
 
-    /// `p - s sqrt(d)` over the same root.
+    /// Returns `p - s sqrt(d)`.
     fn conjugate(&self) -> Self {
         Self { s: -&self.s, ..self.clone() }
     }
 
-    /// `p^2 - s^2 d`, the number times its conjugate.
+    /// Returns `p^2 - s^2 d`, the product of the number and its conjugate.
     fn norm(&self) -> RBig {
         &self.p * &self.p - &self.s * &self.s * &self.d
     }
 
-    /// The signs of `p` and of `s sqrt(d)`.
+    /// Returns the signs of `p` and of `s sqrt(d)`.
     fn signs(&self) -> (Ordering, Ordering) {
         let root = if self.d.is_zero() { Ordering::Equal } else { sign(&self.s) };
         (sign(&self.p), root)
     }
 
-    /// Exact: where the two terms pull in different directions, the larger square wins.
+    /// Returns the exact sign. Where the two terms differ in sign, the larger square decides.
     pub(super) fn sign(&self) -> Ordering {
         match self.signs() {
             (Ordering::Equal, root) => root,
@@ -137,8 +137,8 @@ impl Surd {
         }
     }
 
-    /// Its value with almost all of [`BITS`] right: no cancellation, as terms of different sign are
-    /// turned into the quotient of norm and conjugate.
+    /// Returns the value with almost all of [`BITS`] correct. Nothing cancels, because terms of
+    /// different sign are turned into the quotient of norm and conjugate.
     fn value(&self) -> Real {
         let plain = |surd: &Self| real(&surd.p) + real(&surd.s) * real(&surd.d).sqrt();
         match self.signs() {
@@ -148,17 +148,17 @@ impl Surd {
         }
     }
 
-    /// The nearest `f64` to its value without its sign.
+    /// Returns the nearest `f64` to the absolute value.
     pub(super) fn size(&self) -> f64 {
         self.value().to_f64().value().abs()
     }
 
     pub(super) fn decimal(&self) -> Decimal {
-        // Only infinite values are no fractions, and none is: no quotient's divisor is 0.
+        // Only infinite values are not fractions. None occurs, because no divisor is 0.
         Decimal::rounded(&RBig::try_from(self.value()).unwrap_or_default())
     }
 
-    /// Whether it is below another number; both without a root in them.
+    /// Returns whether the number is less than another; both must be rational.
     pub(super) fn is_less_rational(&self, other: &Self) -> bool {
         self.p < other.p
     }

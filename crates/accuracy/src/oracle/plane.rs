@@ -1,4 +1,4 @@
-//! Plane: `t = (q - o).n / d.n` with a point `q` and the normal `n`.
+//! Exact intersection with a plane: `t = (q - o).n / d.n` with a point `q` and the normal `n`.
 
 use super::exact::{
     Surd, Vector, abs, float, is_zero, products, sign, subtract, sum, sum_of_sizes,

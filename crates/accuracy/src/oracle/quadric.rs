@@ -1,4 +1,5 @@
-//! `|f + t d| = r` in the plane (cylinder) or in space (sphere): `f` from the centre to the origin.
+//! The equation `|f + t d| = r` in the plane (cylinder) or in space (sphere), with `f` from the
+//! centre to the origin.
 
 use std::cmp::Ordering;
 
@@ -7,7 +8,7 @@ use dashu_ratio::RBig;
 use super::exact::{Surd, abs, dot, dot_of_sizes, float, products, sign, sum};
 use super::margin;
 
-/// A ray against a circle or a sphere around 0: the roots of `a t^2 + 2 h t + c`.
+/// A ray against a circle or a sphere around 0, as the polynomial `a t^2 + 2 h t + c`.
 pub(super) struct Quadric<const N: usize> {
     pub(super) from_center: [RBig; N],
     direction: [RBig; N],
@@ -20,7 +21,7 @@ pub(super) struct Quadric<const N: usize> {
 }
 
 impl<const N: usize> Quadric<N> {
-    /// `direction` is not 0 and `radius` is above 0.
+    /// Creates the polynomial; `direction` must not be 0, and `radius` must be above 0.
     pub(super) fn new(from_center: [RBig; N], direction: [RBig; N], radius: RBig) -> Self {
         let a = dot(&direction, &direction);
         let h = dot(&from_center, &direction);
@@ -29,23 +30,23 @@ impl<const N: usize> Quadric<N> {
         Self { from_center, direction, radius, a, h, c, discriminant }
     }
 
-    /// Whether the ray's line touches or crosses it.
+    /// Returns whether the ray's line touches or crosses the circle or sphere.
     pub(super) fn is_met(&self) -> bool {
         sign(&self.discriminant).is_ge()
     }
 
-    /// The nearer and the farther root of a line that meets it.
+    /// Returns the nearer and the farther root, for a line that meets the circle or sphere.
     pub(super) fn roots(&self) -> [Surd; 2] {
         let middle = -&self.h / &self.a;
         let half_chord = RBig::ONE / &self.a;
         [-&half_chord, half_chord].map(|s| Surd::root(s, self.discriminant.clone()).plus(&middle))
     }
 
-    /// The margin of the discriminant's sign.
+    /// Returns the margin of the discriminant's sign.
     ///
-    /// It says whether the closest approach `l = f - (h/a) d` is longer than `r`. Perturbing `f`,
-    /// `d` and `r` by an ulp moves `l` by no more than an ulp of `|f_i| + |h/a d_i|` in each
-    /// direction, and `r` by one of `r`.
+    /// The sign tells whether the closest approach `l = f - (h/a) d` is longer than `r`. Perturbing
+    /// `f`, `d` and `r` by an ulp moves `l` by at most an ulp of `|f_i| + |h/a d_i|` in each
+    /// direction, and `r` by an ulp of `r`.
     pub(super) fn approach_margin(&self) -> f64 {
         let s = &self.h / &self.a;
         let steps: [RBig; N] = std::array::from_fn(|i| &s * &self.direction[i]);
@@ -55,14 +56,14 @@ impl<const N: usize> Quadric<N> {
         margin::in_ulps(gap.size(), float(&dot(&moved, &moved)).sqrt() + float(&self.radius))
     }
 
-    /// The same as far as it decides the verdict: a line from inside or from the surface surely
-    /// meets it.
+    /// Returns the same margin where it decides the verdict, else infinity: a line from inside or
+    /// from the surface always meets the surface.
     pub(super) fn meeting_margin(&self) -> f64 {
         if sign(&self.c).is_gt() { self.approach_margin() } else { f64::INFINITY }
     }
 
-    /// The margin of the signs of the roots: that of `c`, whether the origin is inside; and on the
-    /// surface, where one root is 0, also that of `h`, whether the ray goes in.
+    /// Returns the margin of the signs of the roots. The sign of `c` tells whether the origin is
+    /// inside. On the surface, where one root is 0, the sign of `h` tells whether the ray goes in.
     pub(super) fn side_margin(&self) -> f64 {
         let squares = products(&self.from_center, &self.from_center);
         let square_radius = &self.radius * &self.radius;
@@ -75,9 +76,9 @@ impl<const N: usize> Quadric<N> {
         }
     }
 
-    /// The relative condition number of a root: by the derivative of `|f + t d|^2 = r^2` it is
-    /// `(sum |f_i p_i| + |t| sum |d_i p_i| + r^2) / (|p.d| |t|)` at the point `p`; and `|p.d|` is
-    /// the discriminant's root. Infinite where the ray is tangent and for a root of 0.
+    /// Returns the relative condition number of a root. By the derivative of `|f + t d|^2 = r^2` it
+    /// is `(sum |f_i p_i| + |t| sum |d_i p_i| + r^2) / (|p.d| |t|)` at the point `p`, where `|p.d|`
+    /// is the root of the discriminant. It is infinite for a tangent and for a root of 0.
     pub(super) fn condition(&self, t: &Surd) -> f64 {
         let t_size = t.size();
         let mut sum = float(&self.radius) * float(&self.radius);
@@ -87,7 +88,7 @@ impl<const N: usize> Quadric<N> {
         sum / (float(&self.discriminant).sqrt() * t_size)
     }
 
-    /// The outward normal at a root: one component an axis.
+    /// Returns the outward normal at a root, one component per axis.
     pub(super) fn normal(&self, t: &Surd) -> [Surd; N] {
         let inverse = RBig::ONE / &self.radius;
         std::array::from_fn(|i| {
@@ -96,7 +97,7 @@ impl<const N: usize> Quadric<N> {
     }
 }
 
-/// Whether a root is on the ray: not behind its origin, and not the origin itself.
+/// Returns whether a root is on the ray, neither behind its origin nor at it.
 pub(super) fn is_ahead(t: &Surd) -> bool {
     t.sign() == Ordering::Greater
 }

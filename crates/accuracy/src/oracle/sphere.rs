@@ -1,4 +1,4 @@
-//! Sphere: the nearest root ahead of `|o + t d - c| = r`.
+//! Exact intersection with a sphere: the closest root of `|o + t d - c| = r` ahead of the origin.
 
 use dashu_ratio::RBig;
 

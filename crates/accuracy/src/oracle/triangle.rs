@@ -1,5 +1,5 @@
-//! Triangle: `t = (a - o).n / d.n` with `n = (b - a) x (c - a)`, hit where the signed volumes that
-//! the ray spans with the three edges do not differ in sign.
+//! Exact intersection with a triangle: `t = (a - o).n / d.n` with `n = (b - a) x (c - a)`. The ray
+//! hits where the signed volumes that it spans with the three edges do not differ in sign.
 
 use std::cmp::Ordering;
 
@@ -11,7 +11,7 @@ use super::exact::{
 };
 use super::{Trace, margin, unit};
 
-/// On which side of an edge the ray passes, and how far from it.
+/// The side of an edge on which the ray passes, and the margin.
 struct Edge {
     side: Ordering,
     margin: f64,
@@ -33,7 +33,7 @@ pub(super) fn trace(vertices: &[Vector; 3], origin: &Vector, direction: &Vector)
     let farthest = |side| {
         edges.iter().filter(|edge| edge.side == side).map(|edge| edge.margin).reduce(f64::max)
     };
-    // Outside by as much as the less certain of two edges with different signs says.
+    // The less certain of two edges with different signs determines the margin of being outside.
     let outside = farthest(Ordering::Greater)
         .zip(farthest(Ordering::Less))
         .map(|(positive, negative)| positive.min(negative));
@@ -69,8 +69,8 @@ pub(super) fn trace(vertices: &[Vector; 3], origin: &Vector, direction: &Vector)
     }
 }
 
-/// The side of the ray on which the edge from `p` to `q` passes, seen from the origin: the sign of
-/// `d.(p x q)`. A ray through the edge itself has no margin.
+/// Returns the side of the ray on which the edge from `p` to `q` passes, seen from the origin: the
+/// sign of `d.(p x q)`. The margin of a ray through the edge itself is 0.
 fn edge(p: &Vector, q: &Vector, direction: &Vector) -> Edge {
     let normal = cross(p, q);
     let volume = dot(direction, &normal);
@@ -81,9 +81,9 @@ fn edge(p: &Vector, q: &Vector, direction: &Vector) -> Edge {
     Edge { side: sign(&volume), margin }
 }
 
-/// The relative condition number of `t = height / slope`: it follows `a - o` and the direction by
-/// the normal, and the edges by the products in the normal and the way from `a` to the point that
-/// is hit.
+/// Returns the relative condition number of `t = height / slope`. It depends on `a - o` and the
+/// direction through the normal, and on the edges through the products in the normal and the vector
+/// from `a` to the hit point.
 fn condition(
     t: &RBig,
     slope: &RBig,

@@ -61,7 +61,7 @@ fn the_other_families_both_hit_and_miss() {
 
 #[test]
 fn exact_cases_are_exact() {
-    // A start on the surface leaves no doubt: whether the ray goes in decides, never the start.
+    // The start is exactly on the surface, so only the direction decides the verdict.
     for name in ["sphere_surface_exact", "cyl_surface_exact", "flat_surface_exact"] {
         let cases = drawn(name, 50);
         let decidable = cases.iter().filter(|case| case.decidable).count();

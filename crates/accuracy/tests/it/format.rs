@@ -1,5 +1,6 @@
-//! Cases and outcomes as text: what is read, what is refused, and with which words.
+//! The JSON format of cases and outcomes: what is accepted, what is rejected, and the errors.
 
+use crate::written;
 use rayweave_accuracy::{Expect, HardCase, Outcome, Primitive, json_lines};
 
 const PLANE: &str = r#""primitive":{"kind":"plane","point":[0,0,1],"normal":[0.0,0.0,1.0]}"#;
@@ -25,28 +26,20 @@ fn inputs_are_enough_and_unknown_fields_are_passed_over() {
 #[test]
 fn numbers_are_rounded_to_f32_and_may_be_named() {
     let text = format!(
-        r#"{{"family":"f","id":"a",{RAY},"primitive":{{"kind":"sphere","center":["NaN","Infinity","-Infinity"],
-        "radius":0.1000000000000001}}}}"#
+        r#"{{"family":"f","id":"a",{RAY},"primitive":{{"kind":"sphere","center":{},"radius":{}}}}}"#,
+        r#"["NaN","Infinity","-Infinity"]"#, "0.1000000000000001"
     );
-    let text = text.replace('\n', " ");
-    let Ok(HardCase { primitive: Primitive::Sphere { center, radius }, .. }) = case(&text) else {
-        panic!("{:?}", case(&text))
+    let sphere = |text: &str| match case(text) {
+        Ok(HardCase { primitive: Primitive::Sphere { center, radius }, .. }) => (center, radius),
+        other => panic!("{other:?}"),
     };
+    let (center, radius) = sphere(&text);
     assert!(center[0].is_nan());
     assert_eq!((center[1], center[2], radius), (f32::INFINITY, f32::NEG_INFINITY, 0.1));
-    let beyond = text.replace("0.1000000000000001", "1e39");
-    let Ok(HardCase { primitive: Primitive::Sphere { radius, .. }, .. }) = case(&beyond) else {
-        panic!()
-    };
-    assert_eq!(radius, f32::INFINITY);
-    let mut written = Vec::new();
-    json_lines::write(&mut written, &[case(&text).expect("a case")])
-        .expect("a vector takes everything");
-    let written = String::from_utf8(written).expect("text");
-    assert!(
-        written.contains(r#""center":["NaN","Infinity","-Infinity"],"radius":0.1}"#),
-        "{written}"
-    );
+    assert_eq!(sphere(&text.replace("0.1000000000000001", "1e39")).1, f32::INFINITY);
+    let written = written(&[case(&text).expect("a case")]);
+    let expected = r#""center":["NaN","Infinity","-Infinity"],"radius":0.1}"#;
+    assert!(written.contains(expected), "{written}");
 }
 
 #[test]
@@ -116,15 +109,12 @@ fn outcomes_are_read_as_written() {
         outcome("e", true, Some(2.0)),
     ];
     assert_eq!(found, expected);
-    let mut written = Vec::new();
     let nan = outcome("f", true, Some(f64::NAN));
-    json_lines::write(&mut written, &[expected[0].clone(), expected[1].clone(), nan])
-        .expect("a vector");
-    let written = String::from_utf8(written).expect("text");
-    assert_eq!(written.lines().nth(2), Some(r#"{"id":"f","hit":true,"t":"NaN"}"#));
+    let written = written(&[expected[0].clone(), expected[1].clone(), nan]);
+    let lines: Vec<&str> = text.lines().take(2).collect();
     assert_eq!(
-        written.lines().take(2).collect::<Vec<_>>(),
-        text.lines().take(2).collect::<Vec<_>>()
+        written,
+        format!("{}\n{{\"id\":\"f\",\"hit\":true,\"t\":\"NaN\"}}\n", lines.join("\n"))
     );
     let error = json_lines::read::<Outcome>(&b"{\"id\":\"a\",\"hit\":true,\"t\":\"far\"}"[..])
         .expect_err("no number")

@@ -1,9 +1,9 @@
-//! The kernel that renders against the committed hard cases.
+//! The tracer's kernel keeps its thresholds on the committed hard cases.
 
 use rayweave_accuracy::{HardCase, Tier, json_lines, kernel, score};
 use rayweave_core::{Arithmetic, Formulas, Precision};
 
-/// How many families exceed their thresholds.
+/// Returns the families in which the kernel exceeds a threshold.
 fn misses(formulas: Formulas, precision: Precision, tier: Tier) -> Vec<String> {
     let corpus = include_str!("../../corpus/hard-cases.jsonl");
     let cases: Vec<HardCase> = json_lines::read(corpus.as_bytes()).expect("the corpus");
@@ -24,7 +24,7 @@ fn the_robust_formulas_keep_their_thresholds() {
     assert_eq!(misses(Formulas::Robust, Precision::F64, Tier::Double), [""; 0]);
 }
 
-/// Catches a corpus, or a score, that everything passes.
+/// Catches a corpus or a score that every kernel passes.
 #[test]
 fn the_textbook_formulas_do_not() {
     let misses = misses(Formulas::Textbook, Precision::F32, Tier::Plain32);

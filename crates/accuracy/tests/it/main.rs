@@ -1,4 +1,4 @@
-//! One program of all tests here: each more would be linked anew.
+//! The integration tests, in one program because each program is linked separately.
 
 mod corpus;
 mod families;
@@ -6,3 +6,10 @@ mod format;
 mod kernel;
 mod oracle;
 mod oracle_properties;
+
+/// Returns the items as a file of JSON lines.
+fn written<T: serde::Serialize>(items: &[T]) -> String {
+    let mut written = Vec::new();
+    rayweave_accuracy::json_lines::write(&mut written, items).expect("a vector takes everything");
+    String::from_utf8(written).expect("JSON is text")
+}

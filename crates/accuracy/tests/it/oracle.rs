@@ -1,4 +1,4 @@
-//! The oracle on cases that can be worked out by hand.
+//! The oracle on cases that can be computed by hand.
 
 use rayweave_accuracy::oracle::INFINITE;
 use rayweave_accuracy::{ExactAnswer, Expect, Primitive, Ray, answer};

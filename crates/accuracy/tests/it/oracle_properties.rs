@@ -1,18 +1,18 @@
-//! The robust kernel against the exact oracle, in f64 and f32, on random and on structured input:
-//! it keeps what `rayweave_accuracy::guarantees` says.
+//! The robust kernel keeps the guarantees of `rayweave_accuracy::guarantees`, in f64 and f32, on
+//! random and on structured input.
 
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use rayweave_accuracy::{Primitive, Ray, guarantees, oracle};
 
-/// A multiple of 1/16, with so few bits that products of several do not round: corners, edges,
-/// tangents and parallels are met exactly.
+/// Generates multiples of 1/16. They have so few bits that products of several do not round, so
+/// rays meet corners, edges, tangents and parallels exactly.
 fn fraction() -> impl Strategy<Value = f32> {
     (-64..=64i8).prop_map(|k| f32::from(k) / 16.0)
 }
 
-/// Where on the way from one end of something to the other: anywhere, at an end, or just beside
-/// one.
+/// Generates a position between two ends, as a share of the way: anywhere, at an end, or just
+/// beside one.
 fn share() -> impl Strategy<Value = f32> {
     let beside = (any::<bool>(), any::<bool>(), 4..24i32).prop_map(|(at_end, beyond, exponent)| {
         f32::from(u8::from(at_end))
@@ -21,13 +21,13 @@ fn share() -> impl Strategy<Value = f32> {
     prop_oneof![fraction().prop_map(|k| k / 4.0), beside]
 }
 
-/// Of a size near 2^-12 to 2^12, either sign.
+/// Generates numbers of a size of 2^-12 to 2^12, with either sign.
 fn sized() -> impl Strategy<Value = f32> {
     (-12..12i32, 1.0..2.0f32, any::<bool>())
         .prop_map(|(exponent, size, up)| 2f32.powi(exponent) * if up { size } else { -size })
 }
 
-/// Of any finite size, subnormal and huge ones now and then.
+/// Generates numbers of any finite size, rarely subnormal or huge ones.
 fn number() -> impl Strategy<Value = f32> {
     prop_oneof![
         60 => fraction(),
@@ -41,14 +41,13 @@ fn vector() -> impl Strategy<Value = [f32; 3]> {
     [number(), number(), number()]
 }
 
-/// Where a ray starts and goes, and where that and the primitive are.
+/// A ray, and the place of the ray and the primitive.
 #[derive(Clone, Debug)]
 struct Setting {
     origin: [f32; 3],
-    /// If not to the point aimed at.
+    /// The direction, if the ray does not go to its target.
     direction: Option<[f32; 3]>,
-    /// Added to all positions. Those are rounded then, and the ray passes what it was aimed at by
-    /// so much.
+    /// An offset of all positions. Its rounding lets the ray pass its target at a small distance.
     place: [f32; 3],
 }
 
@@ -66,9 +65,12 @@ fn difference(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
     std::array::from_fn(|i| a[i] - b[i])
 }
 
-/// Checks the primitive whose positions are put through the function that it is given.
+/// A function that moves a position.
+type Put<'a> = &'a dyn Fn([f32; 3]) -> [f32; 3];
+
+/// Checks the primitive that the closure builds, with a function that moves its positions.
 fn check(
-    primitive: impl FnOnce(&dyn Fn([f32; 3]) -> [f32; 3]) -> Primitive,
+    primitive: impl FnOnce(Put<'_>) -> Primitive,
     setting: &Setting,
     aim: [f32; 3],
 ) -> Result<(), TestCaseError> {
@@ -91,8 +93,7 @@ fn config() -> ProptestConfig {
 proptest! {
     #![proptest_config(config())]
 
-    /// Catches a plane with one side, one that is hit behind the ray, and heights that are not
-    /// differences.
+    /// Catches a plane with one side, a hit behind the ray, and heights not computed as differences.
     #[test]
     fn planes_are_hit_where_they_are(
         point in vector(),
@@ -100,7 +101,7 @@ proptest! {
         aside in [fraction(), fraction()],
         setting in setting(),
     ) {
-        // Two ways at a right angle to the normal.
+        // Two vectors perpendicular to the normal.
         let [x, y, z] = normal;
         let aim = moved(moved(point, [y, -x, 0.0], aside[0]), [0.0, z, -y], aside[1]);
         check(|put| Primitive::Plane { point: put(point), normal }, &setting, aim)?;
@@ -121,8 +122,8 @@ proptest! {
         check(|put| Primitive::Sphere { center: put(center), radius }, &setting, aim)?;
     }
 
-    /// Catches a back that is not hit, an edge with the wrong sign, and corners or distances that
-    /// are not differences.
+    /// Catches a back that is not hit, an edge with the wrong sign, and corners or distances not
+    /// computed as differences.
     #[test]
     fn triangles_are_hit_where_they_are(
         corners in [vector(), vector(), vector()],
@@ -130,12 +131,12 @@ proptest! {
         setting in setting(),
     ) {
         let [a, b, c] = corners;
-        // Of the plane: at a corner, on an edge or just beside, within or outside.
+        // A point of the plane: at a corner, on or just beside an edge, inside or outside.
         let aim = moved(moved(a, difference(b, a), shares[0]), difference(c, a), shares[1]);
         check(|put| Primitive::Triangle { a: put(a), b: put(b), c: put(c) }, &setting, aim)?;
     }
 
-    /// Catches a far wall that is not seen through the open end, heights that are not differences,
+    /// Catches a far wall that is not hit through the open end, heights not computed as differences,
     /// caps, and a discriminant that cancels.
     #[test]
     fn cylinders_are_hit_where_they_are(
@@ -150,14 +151,15 @@ proptest! {
         let length = outward[0].hypot(outward[1]).max(1.0 / 16.0);
         let aside = moved(bottom, [outward[0], 0.0, outward[1]], radius / length);
         let aim = moved(aside, difference(top, bottom), share);
-        check(|put| Primitive::Cylinder { bottom: put(bottom), top: put(top), radius }, &setting, aim)?;
+        let wall = |put: Put<'_>| Primitive::Cylinder { bottom: put(bottom), top: put(top), radius };
+        check(wall, &setting, aim)?;
     }
 }
 
-/// Some numbers, those of a ray last, and the primitive that the others are.
+/// The numbers of a primitive and then of a ray, and the constructor of the primitive.
 type Kind = (&'static [f32], fn(&[f32]) -> Primitive);
 
-/// One primitive of each kind, hit by its ray.
+/// One primitive of each kind, with a ray that hits it.
 const KINDS: [Kind; 4] = [
     (&[0.0, 1.0, 2.0, 0.5, 0.25, 1.0, 0.5, 0.25, -3.0, 0.125, 0.25, 1.0], |n| Primitive::Plane {
         point: triple(&n[..3]),
@@ -179,7 +181,7 @@ fn triple(numbers: &[f32]) -> [f32; 3] {
     [numbers[0], numbers[1], numbers[2]]
 }
 
-/// Catches a hit on what is nowhere: infinities that cancel, a NaN that a comparison lets pass.
+/// Catches infinities that cancel, and a NaN that passes a comparison.
 #[test]
 fn numbers_that_are_not_finite_hit_nothing() {
     let odd = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
