@@ -23,7 +23,7 @@ pub struct HardCase {
     /// The exact answer; `None` if it has not been computed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub expect: Option<Expect>,
-    /// Whether a good f32 kernel must get the verdict right: see [`crate::oracle`].
+    /// True if a good f32 kernel must get the verdict right: see [`crate::oracle`].
     #[serde(default)]
     pub decidable: bool,
     /// The relative condition number of `t`, 0 on a miss, 9.9e99 for infinite.

@@ -50,7 +50,7 @@ pub fn read<T: DeserializeOwned>(source: impl BufRead) -> Result<Vec<T>, ReadErr
 ///
 /// # Errors
 ///
-/// Those of `target`.
+/// Errors of `target`.
 pub fn write<T: Serialize>(mut target: impl Write, items: &[T]) -> io::Result<()> {
     for item in items {
         serde_json::to_writer(&mut target, item)?;

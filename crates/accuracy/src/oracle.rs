@@ -46,7 +46,7 @@ pub struct ExactAnswer {
     pub cond: f64,
     /// The distance to the closest other verdict in f32 ulps, to four digits, at most [`INFINITE`].
     pub margin: f64,
-    /// Whether a good f32 kernel must get the verdict right.
+    /// True if a good f32 kernel must get the verdict right.
     pub decidable: bool,
     /// The reason for a miss; empty on a hit.
     pub reason: &'static str,

@@ -9,7 +9,7 @@ use crate::number;
 pub struct Outcome {
     /// The id of the case.
     pub id: String,
-    /// Whether the primitive was hit; for a mesh, whether any triangle was.
+    /// True if the primitive was hit; for a mesh, if any triangle was.
     pub hit: bool,
     /// The distance of the hit in units of the direction; for a mesh that of the closest hit. It
     /// may be absent on a miss.

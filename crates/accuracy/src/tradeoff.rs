@@ -44,7 +44,7 @@ pub struct TradeoffStudy {
     pub costs: Vec<ArithmeticCost>,
     /// The number of measured rounds.
     pub rounds: usize,
-    /// Whether every timed image equalled the first one of its setting, bit for bit.
+    /// True if every timed image equalled the first one of its setting, bit for bit.
     pub repeatable: bool,
 }
 
@@ -67,7 +67,7 @@ pub struct TradeoffRow {
     /// The part that too few rays cause: the root mean square error of this setting with all
     /// bounces of the scene, in the most exact arithmetic.
     pub sampling_rmse: f64,
-    /// Whether the setting is on the Pareto front: see [`pareto_front`].
+    /// True if the setting is on the Pareto front: see [`pareto_front`].
     pub in_front: bool,
 }
 

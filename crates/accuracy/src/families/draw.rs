@@ -114,7 +114,8 @@ impl Draw {
         index: usize,
     ) -> (DVec3, &'static str) {
         let direction = self.unit();
-        let (inward, side) = if index % 2 == 0 { (true, "inward") } else { (false, "outward") };
+        let (inward, side) =
+            if index.is_multiple_of(2) { (true, "inward") } else { (false, "outward") };
         let turned = (direction.dot(outward) > 0.0) == inward;
         (if turned { -direction } else { direction }, side)
     }

@@ -24,7 +24,7 @@ impl Reference {
     ///
     /// # Errors
     ///
-    /// Those of `render`, and an invalid scene.
+    /// Errors of `render`, and an invalid scene.
     pub fn new(
         scene: &Scene,
         size: (u32, u32),

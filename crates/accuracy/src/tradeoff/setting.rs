@@ -12,7 +12,7 @@ pub struct Setting {
     pub arithmetic: Arithmetic,
     /// The placement of samples; without effect for one ray per pixel.
     pub sampling: Sampling,
-    /// Whether lattice points are interpolated where pixels look alike.
+    /// True if lattice points are interpolated where pixels look alike.
     pub adaptive: bool,
     /// The density `s`, as in [`rayweave_core::scene::RenderSettings::antialiasing`].
     pub antialiasing: u32,

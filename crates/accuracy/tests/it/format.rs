@@ -26,8 +26,8 @@ fn inputs_are_enough_and_unknown_fields_are_passed_over() {
 #[test]
 fn numbers_are_rounded_to_f32_and_may_be_named() {
     let text = format!(
-        r#"{{"family":"f","id":"a",{RAY},"primitive":{{"kind":"sphere","center":{},"radius":{}}}}}"#,
-        r#"["NaN","Infinity","-Infinity"]"#, "0.1000000000000001"
+        r#"{{"family":"f","id":"a",{RAY},"primitive":{{"kind":"sphere",{},"radius":{}}}}}"#,
+        r#""center":["NaN","Infinity","-Infinity"]"#, "0.1000000000000001"
     );
     let sphere = |text: &str| match case(text) {
         Ok(HardCase { primitive: Primitive::Sphere { center, radius }, .. }) => (center, radius),

@@ -3,12 +3,8 @@
 use rayweave_accuracy::oracle::INFINITE;
 use rayweave_accuracy::{ExactAnswer, Expect, Primitive, Ray, answer};
 
-fn ray(origin: [f32; 3], direction: [f32; 3]) -> Ray {
-    Ray { origin, direction }
-}
-
 fn trace(primitive: &Primitive, origin: [f32; 3], direction: [f32; 3]) -> ExactAnswer {
-    answer(primitive, &ray(origin, direction))
+    answer(primitive, &Ray { origin, direction })
 }
 
 /// Asserts a hit at these numbers, each to 40 digits, and returns whether it is decidable.
@@ -32,6 +28,12 @@ fn assert_miss(answer: &ExactAnswer, reason: &str) -> bool {
     answer.decidable
 }
 
+/// Traces a ray, asserts a miss for this reason, and returns whether it is decidable.
+#[track_caller]
+fn misses(primitive: &Primitive, origin: [f32; 3], direction: [f32; 3], reason: &str) -> bool {
+    assert_miss(&trace(primitive, origin, direction), reason)
+}
+
 const SQRT_HALF: &str = "0.7071067811865475244008443621048490392848";
 
 #[test]
@@ -41,18 +43,18 @@ fn plane() {
     assert!(assert_hit(&down, "1.5", ["3.75", "1", "5"], ["0", "1", "0"]));
     // t = (q - o).n / d.n = -6 / -4: both without cancellation, so the errors of both add up.
     assert_eq!(down.cond, 2.0);
-    assert!(assert_miss(&trace(&floor, [3.0, 4.0, 5.0], [0.5, 2.0, 0.0]), "behind"));
-    assert!(assert_miss(&trace(&floor, [3.0, 4.0, 5.0], [1.0, 0.0, 1.0]), "parallel"));
+    assert!(misses(&floor, [3.0, 4.0, 5.0], [0.5, 2.0, 0.0], "behind"));
+    assert!(misses(&floor, [3.0, 4.0, 5.0], [1.0, 0.0, 1.0], "parallel"));
     // In the plane: no hit, though every point of the ray is one.
-    assert!(assert_miss(&trace(&floor, [3.0, 1.0, 5.0], [1.0, 0.0, 1.0]), "parallel"));
+    assert!(misses(&floor, [3.0, 1.0, 5.0], [1.0, 0.0, 1.0], "parallel"));
     // On the plane: t = 0.
-    assert!(assert_miss(&trace(&floor, [3.0, 1.0, 5.0], [1.0, -1.0, 1.0]), "behind"));
+    assert!(misses(&floor, [3.0, 1.0, 5.0], [1.0, -1.0, 1.0], "behind"));
     // From below, at a slanted plane: the normal stays as given.
     let slope = Primitive::Plane { point: [0.0, 0.0, 0.0], normal: [1.0, 1.0, 0.0] };
     let up = trace(&slope, [-1.0, -1.0, 0.0], [0.0, 1.0, 0.0]);
     assert!(assert_hit(&up, "2", ["-1", "1", "0"], [SQRT_HALF, SQRT_HALF, "0"]));
     let flat = Primitive::Plane { point: [0.0; 3], normal: [0.0; 3] };
-    assert!(assert_miss(&trace(&flat, [0.0, 1.0, 0.0], [0.0, -1.0, 0.0]), "zero normal"));
+    assert!(misses(&flat, [0.0, 1.0, 0.0], [0.0, -1.0, 0.0], "zero normal"));
 }
 
 #[test]
@@ -60,7 +62,7 @@ fn a_rounded_boundary_is_not_decidable_and_an_exact_one_is() {
     // d.n = 1/2 - (1/2 + u) + u = 0 with u = 2^-23, and no sum of these terms in f32 rounds.
     let ulp = f32::EPSILON;
     let exact = Primitive::Plane { point: [0.0, 0.0, 1.0], normal: [1.0, 1.0, 1.0] };
-    assert!(assert_miss(&trace(&exact, [0.0; 3], [0.5, -0.5 - ulp, ulp]), "parallel"));
+    assert!(misses(&exact, [0.0; 3], [0.5, -0.5 - ulp, ulp], "parallel"));
     // (1 + u)^2 - (1 + 2 u) - u^2 = 0, but f32 rounds the square.
     let rounded = Primitive::Plane { point: [0.0, 0.0, 1.0], normal: [1.0 + ulp, -1.0, 1.0] };
     let answer = trace(&rounded, [0.0; 3], [1.0 + ulp, 1.0 + 2.0 * ulp, -ulp * ulp]);
@@ -87,9 +89,9 @@ fn the_least_certain_comparison_decides_how_certain_a_verdict_is() {
     // 2^23 - (2^23 - 1) - 1 = 0: the sizes sum up to 2^24, which f32 can just count to.
     let count = 8_388_608.0;
     let space = Primitive::Plane { point: [0.0, 0.0, 1.0], normal: [1.0; 3] };
-    assert!(assert_miss(&trace(&space, [0.0; 3], [count, 1.0 - count, -1.0]), "parallel"));
+    assert!(misses(&space, [0.0; 3], [count, 1.0 - count, -1.0], "parallel"));
     // Two units more are too much for one of the orders of adding.
-    assert!(!assert_miss(&trace(&space, [0.0; 3], [count + 1.0, -count, -1.0]), "parallel"));
+    assert!(!misses(&space, [0.0; 3], [count + 1.0, -count, -1.0], "parallel"));
 }
 
 #[test]
@@ -106,8 +108,8 @@ fn sphere() {
         ["4", "4", "0"],
         ["0.6", "0.8", "0"]
     ));
-    assert!(assert_miss(&trace(&ball, [4.5, 4.0, 0.0], [2.0, 0.0, 0.0]), "behind"));
-    assert!(assert_miss(&trace(&ball, [-8.0, 5.5, 0.0], [2.0, 0.0, 0.0]), "beside"));
+    assert!(misses(&ball, [4.5, 4.0, 0.0], [2.0, 0.0, 0.0], "behind"));
+    assert!(misses(&ball, [-8.0, 5.5, 0.0], [2.0, 0.0, 0.0], "beside"));
     // An irrational root: the chord at height 1 of a unit sphere moved up by half.
     let unit = Primitive::Sphere { center: [0.0, 0.5, 0.0], radius: 1.0 };
     let root = "0.8660254037844386467637231707529361834714";
@@ -119,9 +121,9 @@ fn sphere() {
         ["0", "0.5", &format!("-{root}")]
     ));
     let hollow = Primitive::Sphere { center: [0.0; 3], radius: 0.0 };
-    assert!(assert_miss(&trace(&hollow, [0.0, 0.0, -1.0], [0.0, 0.0, 1.0]), "no radius"));
+    assert!(misses(&hollow, [0.0, 0.0, -1.0], [0.0, 0.0, 1.0], "no radius"));
     let inverse = Primitive::Sphere { center: [0.0; 3], radius: -1.0 };
-    assert!(assert_miss(&trace(&inverse, [0.0, 0.0, -2.0], [0.0, 0.0, 1.0]), "no radius"));
+    assert!(misses(&inverse, [0.0, 0.0, -2.0], [0.0, 0.0, 1.0], "no radius"));
 }
 
 #[test]
@@ -132,9 +134,9 @@ fn a_tangent_touches_a_sphere() {
     assert_eq!((tangent.margin, tangent.cond), (0.0, INFINITE));
     let ulp = f32::EPSILON;
     let over = Primitive::Sphere { center: [0.0, 1.0, 0.0], radius: 1.0 - ulp / 2.0 };
-    assert!(!assert_miss(&trace(&over, [0.0, 0.0, -5.0], [0.0, 0.0, 1.0]), "beside"));
+    assert!(!misses(&over, [0.0, 0.0, -5.0], [0.0, 0.0, 1.0], "beside"));
     // Past the point where it touches it does not matter whether it does.
-    assert!(assert_miss(&trace(&ball, [0.0, 0.0, 1.0], [0.0, 0.0, 1.0]), "behind"));
+    assert!(misses(&ball, [0.0, 0.0, 1.0], [0.0, 0.0, 1.0], "behind"));
 }
 
 #[test]
@@ -142,12 +144,12 @@ fn a_start_on_the_sphere_hits_only_the_other_side() {
     let ball = Primitive::Sphere { center: [0.0; 3], radius: 5.0 };
     let inward = trace(&ball, [0.0, 3.0, -4.0], [0.0, 0.0, 0.5]);
     assert!(assert_hit(&inward, "16", ["0", "3", "4"], ["0", "0.6", "0.8"]));
-    assert!(assert_miss(&trace(&ball, [0.0, 3.0, -4.0], [0.0, 0.0, -0.5]), "behind"));
+    assert!(misses(&ball, [0.0, 3.0, -4.0], [0.0, 0.0, -0.5], "behind"));
     // Almost a tangent: whether it goes in is certain, and then it must come out.
     let shallow = trace(&ball, [0.0, 3.0, -4.0], [0.0, 4.0, 3.0 + 2.0_f32.powi(-10)]);
     assert!(shallow.expect.is_hit() && shallow.decidable);
     // At a right angle to the radius: tangent there, and nothing else.
-    assert!(!assert_miss(&trace(&ball, [0.0, 3.0, -4.0], [0.0, 4.0, 3.0]), "behind"));
+    assert!(!misses(&ball, [0.0, 3.0, -4.0], [0.0, 4.0, 3.0], "behind"));
 }
 
 const TRIANGLE: Primitive =
@@ -163,8 +165,8 @@ fn triangle() {
     assert!(assert_miss(&above(3.0, 3.0), "outside"));
     assert!(assert_miss(&above(-1.0, 1.0), "outside"));
     assert!(assert_miss(&above(1.0, -1.0), "outside"));
-    assert!(assert_miss(&trace(&TRIANGLE, [1.0, 1.0, 2.0], [0.0, 0.0, 0.5]), "behind"));
-    assert!(assert_miss(&trace(&TRIANGLE, [1.0, 1.0, 0.0], [0.0, 1.0, 0.5]), "behind"));
+    assert!(misses(&TRIANGLE, [1.0, 1.0, 2.0], [0.0, 0.0, 0.5], "behind"));
+    assert!(misses(&TRIANGLE, [1.0, 1.0, 0.0], [0.0, 1.0, 0.5], "behind"));
 }
 
 #[test]
@@ -191,14 +193,14 @@ fn edges_and_vertices_belong_to_a_triangle() {
 #[test]
 fn a_ray_in_the_plane_misses_a_triangle() {
     // Through the middle, and along an edge.
-    assert!(assert_miss(&trace(&TRIANGLE, [-1.0, 1.0, 0.0], [1.0, 0.0, 0.0]), "parallel"));
-    assert!(assert_miss(&trace(&TRIANGLE, [-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]), "parallel"));
-    assert!(assert_miss(&trace(&TRIANGLE, [1.0, 1.0, 3.0], [1.0, 1.0, 0.0]), "parallel"));
+    assert!(misses(&TRIANGLE, [-1.0, 1.0, 0.0], [1.0, 0.0, 0.0], "parallel"));
+    assert!(misses(&TRIANGLE, [-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], "parallel"));
+    assert!(misses(&TRIANGLE, [1.0, 1.0, 3.0], [1.0, 1.0, 0.0], "parallel"));
     // The normal's products are rounded: certain where the ray passes outside, not in the plane.
     let c = [-1.0 - f32::EPSILON, 1.0 + 3.0 * f32::EPSILON, 0.0];
     let rounded = Primitive::Triangle { a: [0.0; 3], b: [1.0 + f32::EPSILON, 1.0, 0.0], c };
-    assert!(assert_miss(&trace(&rounded, [-5.0, 50.0, 5.0], [1.0, 0.0, 0.0]), "parallel"));
-    assert!(!assert_miss(&trace(&rounded, [-5.0, 0.5, 0.0], [1.0, 0.0, 0.0]), "parallel"));
+    assert!(misses(&rounded, [-5.0, 50.0, 5.0], [1.0, 0.0, 0.0], "parallel"));
+    assert!(!misses(&rounded, [-5.0, 0.5, 0.0], [1.0, 0.0, 0.0], "parallel"));
 }
 
 #[test]
@@ -214,7 +216,7 @@ fn a_triangle_without_area_is_never_hit() {
     // With all the bits of f32 its products are rounded; that is no excuse.
     let (b, c) = ([0.1, 0.3, 0.7], [0.2, 0.6, 1.4]);
     let long = Primitive::Triangle { a: o, b, c };
-    assert!(assert_miss(&trace(&long, [0.1, 0.3, -1.0], [0.0, 0.0, 1.0]), "degenerate"));
+    assert!(misses(&long, [0.1, 0.3, -1.0], [0.0, 0.0, 1.0], "degenerate"));
     // An area of 2^-149 is one.
     let least = down(o, x, [1.0, f32::from_bits(1), 0.0]);
     assert!(!assert_hit(&least, "2", ["1", "0", "0"], ["0", "0", "1"]));
@@ -231,13 +233,10 @@ fn cylinder() {
     assert!(assert_hit(&near, "3", ["-2", "4", "4"], ["-0.6", "0", "0.8"]));
     let far = trace(&wide, [-1.0, 1.0, 4.0], [2.0, 1.0, 0.0]);
     assert!(assert_hit(&far, "2.5", ["4", "3.5", "4"], ["0.6", "0", "0.8"]));
-    assert!(assert_miss(&trace(&wide, [-8.0, 1.0, 6.0], [2.0, 1.0, 0.0]), "beside"));
-    assert!(assert_miss(&trace(&wide, [7.0, 1.0, 4.0], [2.0, 1.0, 0.0]), "behind, above or below"));
+    assert!(misses(&wide, [-8.0, 1.0, 6.0], [2.0, 1.0, 0.0], "beside"));
+    assert!(misses(&wide, [7.0, 1.0, 4.0], [2.0, 1.0, 0.0], "behind, above or below"));
     // From inside out of the open top.
-    assert!(assert_miss(
-        &trace(&wide, [-1.0, 8.0, 4.0], [2.0, 1.0, 0.0]),
-        "behind, above or below"
-    ));
+    assert!(misses(&wide, [-1.0, 8.0, 4.0], [2.0, 1.0, 0.0], "behind, above or below"));
     // A tangent touches it.
     let tangent = trace(&WALL, [1.0, 0.0, -5.0], [0.0, 0.0, 1.0]);
     assert!(!assert_hit(&tangent, "5", ["1", "0", "0"], ["1", "0", "0"]));
@@ -272,19 +271,16 @@ fn both_rims_belong_to_the_wall() {
 
 #[test]
 fn a_ray_along_the_axis_misses_a_cylinder() {
-    assert!(assert_miss(&trace(&WALL, [0.0, -5.0, 0.0], [0.0, 1.0, 0.0]), "parallel to the axis"));
+    assert!(misses(&WALL, [0.0, -5.0, 0.0], [0.0, 1.0, 0.0], "parallel to the axis"));
     // In the wall itself.
-    assert!(assert_miss(&trace(&WALL, [1.0, -5.0, 0.0], [0.0, 1.0, 0.0]), "parallel to the axis"));
+    assert!(misses(&WALL, [1.0, -5.0, 0.0], [0.0, 1.0, 0.0], "parallel to the axis"));
 }
 
 #[test]
 fn a_start_on_the_wall_hits_only_the_other_side() {
     let inward = trace(&WALL, [0.0, 0.0, -1.0], [0.0, 0.25, 1.0]);
     assert!(assert_hit(&inward, "2", ["0", "0.5", "1"], ["0", "0", "1"]));
-    assert!(assert_miss(
-        &trace(&WALL, [0.0, 0.0, -1.0], [0.0, 0.25, -1.0]),
-        "behind, above or below"
-    ));
+    assert!(misses(&WALL, [0.0, 0.0, -1.0], [0.0, 0.25, -1.0], "behind, above or below"));
 }
 
 #[test]
@@ -296,7 +292,7 @@ fn a_cylinder_that_is_none_is_missed() {
         (cylinder([0.0, 1.0, 0.0], [0.0, -1.0, 0.0], 1.0), "no radius or height"),
         (cylinder([0.0, -1.0, 0.0], [0.5, 1.0, 0.0], 1.0), "askew"),
     ] {
-        assert!(assert_miss(&trace(&primitive, [0.0, 0.0, -3.0], [0.0, 0.0, 1.0]), reason));
+        assert!(misses(&primitive, [0.0, 0.0, -3.0], [0.0, 0.0, 1.0], reason));
     }
 }
 
@@ -307,8 +303,8 @@ fn the_nearest_triangle_of_a_mesh_counts() {
     let hit = trace(&mesh, [0.0, 0.0, 0.0], [0.0, 0.0, 1.0]);
     assert_eq!(hit.expect, Expect::MeshHit { t: "1".parse().expect("a number") });
     assert!(hit.decidable && hit.margin == 0.0, "a vertex, and yet no excuse");
-    assert!(assert_miss(&trace(&mesh, [3.0, 3.0, 0.0], [0.0, 0.0, 1.0]), "no triangle"));
-    assert!(assert_miss(&trace(&mesh, [1.0, 1.0, 0.0], [0.0; 3]), "zero direction"));
+    assert!(misses(&mesh, [3.0, 3.0, 0.0], [0.0, 0.0, 1.0], "no triangle"));
+    assert!(misses(&mesh, [1.0, 1.0, 0.0], [0.0; 3], "zero direction"));
     // A miss is as certain as the nearest miss of all.
     let apart = [[9.0, 9.0, 1.0], [9.0, 8.0, 1.0], [8.0, 9.0, 1.0]];
     let mesh = Primitive::Mesh { triangles: vec![at(1.0), apart] };
@@ -320,12 +316,12 @@ fn the_nearest_triangle_of_a_mesh_counts() {
 fn input_that_is_not_finite_is_missed() {
     let ball = Primitive::Sphere { center: [0.0; 3], radius: 1.0 };
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
-        assert!(assert_miss(&trace(&ball, [0.0, bad, -3.0], [0.0, 0.0, 1.0]), "non-finite input"));
-        assert!(assert_miss(&trace(&ball, [0.0, 0.0, -3.0], [bad, 0.0, 1.0]), "non-finite input"));
+        assert!(misses(&ball, [0.0, bad, -3.0], [0.0, 0.0, 1.0], "non-finite input"));
+        assert!(misses(&ball, [0.0, 0.0, -3.0], [bad, 0.0, 1.0], "non-finite input"));
         let odd = Primitive::Sphere { center: [0.0; 3], radius: bad };
-        assert!(assert_miss(&trace(&odd, [0.0, 0.0, -3.0], [0.0, 0.0, 1.0]), "non-finite input"));
+        assert!(misses(&odd, [0.0, 0.0, -3.0], [0.0, 0.0, 1.0], "non-finite input"));
     }
-    assert!(assert_miss(&trace(&ball, [0.0, 0.0, -3.0], [0.0, -0.0, 0.0]), "zero direction"));
+    assert!(misses(&ball, [0.0, 0.0, -3.0], [0.0, -0.0, 0.0], "zero direction"));
 }
 
 #[test]

@@ -93,7 +93,7 @@ fn config() -> ProptestConfig {
 proptest! {
     #![proptest_config(config())]
 
-    /// Catches a plane with one side, a hit behind the ray, and heights not computed as differences.
+    /// Catches a plane with one side, a hit behind the ray, and heights that are not differences.
     #[test]
     fn planes_are_hit_where_they_are(
         point in vector(),
@@ -136,7 +136,7 @@ proptest! {
         check(|put| Primitive::Triangle { a: put(a), b: put(b), c: put(c) }, &setting, aim)?;
     }
 
-    /// Catches a far wall that is not hit through the open end, heights not computed as differences,
+    /// Catches a far wall that is not hit through the open end, heights that are not differences,
     /// caps, and a discriminant that cancels.
     #[test]
     fn cylinders_are_hit_where_they_are(
@@ -151,7 +151,9 @@ proptest! {
         let length = outward[0].hypot(outward[1]).max(1.0 / 16.0);
         let aside = moved(bottom, [outward[0], 0.0, outward[1]], radius / length);
         let aim = moved(aside, difference(top, bottom), share);
-        let wall = |put: Put<'_>| Primitive::Cylinder { bottom: put(bottom), top: put(top), radius };
+        let wall = |put: Put<'_>| {
+            Primitive::Cylinder { bottom: put(bottom), top: put(top), radius }
+        };
         check(wall, &setting, aim)?;
     }
 }
