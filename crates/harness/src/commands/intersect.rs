@@ -41,7 +41,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let out = arguments.json.as_deref().map(PendingFile::create).transpose()?;
     let name = arguments.cases.display();
     let file = File::open(&arguments.cases).map_err(|e| format!("{name}: cannot be read: {e}"))?;
-    let cases: Vec<HardCase> = json_lines::read(BufReader::new(file)).map_err(|e| format!("{name}: {e}"))?;
+    let cases: Vec<HardCase> =
+        json_lines::read(BufReader::new(file)).map_err(|e| format!("{name}: {e}"))?;
     let precision = match arguments.precision {
         KernelPrecision::F32 => Precision::F32,
         KernelPrecision::F64 => Precision::F64,
