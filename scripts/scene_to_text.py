@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Turns a scene file (TOML) into bare words and numbers, for programs without a TOML library.
+"""Converts a scene file (TOML) to plain words and numbers, for programs without a TOML library.
 
     scene_to_text.py SCENE.toml [OUT.txt]      (without OUT.txt: to standard output)
 
-The text is a list of sections, always all of them and in this order. A section is a keyword and
-its values; a list starts with the number of its rows. Missing keys have got their defaults, and a
-material is the number of its row, from 0.
+The text has all of these sections, in this order. A section is a keyword and its values; a list
+starts with its number of rows. Missing keys have their defaults. A material is the number of its
+row, from 0.
 
     image      width height
     camera     position.xyz look_at.xyz up.xyz focal_length screen_width
@@ -17,8 +17,8 @@ material is the number of its row, from 0.
     triangles N  a.xyz b.xyz c.xyz material
     cylinders N  bottom.xyz top.y radius material
 
-The triangles of meshes come after the scene's own. What a value may be is not checked here beyond
-the names of keys: the program that draws the scene files proper does that, with line numbers.
+The triangles of meshes follow the scene's own. Only the names of keys are checked here; rayweave
+checks the values, with line numbers.
 """
 
 import os
@@ -53,7 +53,7 @@ class SceneError(Exception):
 
 
 def filled(table, keys, where):
-    """The values of `keys` in order, from the table or by default."""
+    """Returns the values of `keys` in order, from the table or by default."""
     if unknown := [key for key in table if key not in keys]:
         raise SceneError(f"{where}: unknown key {unknown[0]}")
     values = []
@@ -66,7 +66,7 @@ def filled(table, keys, where):
 
 
 def obj_triangles(path):
-    """The triangles of a Wavefront OBJ file: polygons as fans, those without area left out."""
+    """Returns the triangles of a Wavefront OBJ file, polygons as fans, without those of no area."""
     vertices, triangles = [], []
     with open(path, encoding="utf-8", errors="replace") as file:
         for line, text in enumerate(file, 1):
@@ -82,7 +82,7 @@ def obj_triangles(path):
                     first, *rest = [vertices[n - 1 if n > 0 else n] for n in numbers]
                     triangles.extend(fan for b, c in zip(rest, rest[1:]) if has_area(fan := (first, b, c)))
             except ValueError:
-                raise SceneError(f"{path}:{line}: {text.strip()} is no vertex, or no face of vertices above it") from None
+                raise SceneError(f"{path}:{line}: {text.strip()}: neither a vertex nor a face of vertices above it") from None
     if not triangles:
         raise SceneError(f"{path}: no triangle")
     return triangles
@@ -95,7 +95,7 @@ def has_area(triangle):
 
 
 def sections(scene, folder="."):
-    """The scene as the text's sections: name to values or rows, materials as numbers, meshes read from `folder`."""
+    """Returns the sections by name: values or rows, with materials as numbers and meshes read."""
     if unknown := [key for key in scene if key not in TABLES]:
         raise SceneError(f"unknown key {unknown[0]}")
     if "camera" not in scene:
@@ -131,7 +131,7 @@ def read_scene(path):
 
 
 def numbers(value):
-    """The numbers of a value, nested lists flattened, as text that reads back to the same number."""
+    """Returns the numbers of a value, nested lists flattened, as text that reads back unchanged."""
     if isinstance(value, (list, tuple)):
         return [text for item in value for text in numbers(item)]
     if isinstance(value, bool) or not isinstance(value, (int, float)):

@@ -1,4 +1,4 @@
-"""The command of a converter: what the converters have in common."""
+"""The command line that the converters share."""
 
 import os
 import sys
@@ -8,7 +8,7 @@ from scene_to_text import SceneError, read_scene
 
 
 def convert(command, usage, scene_to_other):
-    """Writes the scene that the command line names to standard output; the exit status."""
+    """Writes the scene that the command line names to standard output. Returns the exit status."""
     program, *arguments = command
     if not 1 <= len(arguments) <= 2 or arguments[0].startswith("-"):
         print(usage, file=sys.stderr)

@@ -1,7 +1,7 @@
-// A ray tracer on Intel's Embree, for comparison: the image model's pictures, one ray at a time.
+// A ray tracer on Intel's Embree, for comparison: the image model, one ray at a time.
 //
-// Spheres and triangles are Embree's; planes and cylinders, for which it has no fitting shape, are
-// a list that is tried beside it. Single precision. It reads the text that scene_to_text.py writes;
+// Spheres and triangles are Embree's. It has no suitable shape for planes and cylinders, which are
+// tested in a separate list. Single precision. It reads the text that scene_to_text.py writes;
 // README.md says how to run it.
 
 #include <embree3/rtcore.h>
@@ -91,7 +91,7 @@ struct Cylinder {
     float intersect(Vec3 origin, Vec3 d) const {
         const float a = d.x * d.x + d.z * d.z;
         if (a == 0) return miss;
-        // From the foot of the axis on the ray, seen from above: no cancellation far away.
+        // From the ray's point closest to the axis, in x and z: no cancellation far away.
         const float px = bottom.x - origin.x, pz = bottom.z - origin.z;
         const float middle = (px * d.x + pz * d.z) / a;
         const float fx = px - middle * d.x, fz = pz - middle * d.z;
@@ -107,7 +107,7 @@ struct Cylinder {
     }
 };
 
-struct Sphere {  // as Embree wants it
+struct Sphere {  // Embree's layout
     Vec3 center;
     float radius;
 };
@@ -228,7 +228,7 @@ public:
 
     Accelerator(const Scene& scene, int threads, bool robust) {
         device_ = rtcNewDevice(("threads=" + std::to_string(threads)).c_str());
-        if (!device_) throw std::runtime_error("Embree gives no device");
+        if (!device_) throw std::runtime_error("Embree cannot create a device");
         scene_ = rtcNewScene(device_);
         rtcSetSceneFlags(scene_, robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
         rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
@@ -247,7 +247,7 @@ public:
             attach(g, triangles);
         }
         rtcCommitScene(scene_);
-        if (rtcGetDeviceError(device_) != RTC_ERROR_NONE) throw std::runtime_error("Embree refuses the scene");
+        if (rtcGetDeviceError(device_) != RTC_ERROR_NONE) throw std::runtime_error("Embree rejects the scene");
         empty_ = scene.spheres.empty() && scene.triangle_materials.empty();
     }
     ~Accelerator() {
@@ -270,7 +270,7 @@ private:
     static T* buffer(RTCGeometry g, RTCBufferType type, RTCFormat format, std::size_t n) {
         const std::size_t stride = type == RTC_BUFFER_TYPE_INDEX ? 3 * sizeof(unsigned) : sizeof(T);
         void* data = rtcSetNewGeometryBuffer(g, type, 0, format, stride, n);
-        if (!data) throw std::runtime_error("Embree gives no memory");
+        if (!data) throw std::runtime_error("Embree cannot allocate a buffer");
         return static_cast<T*>(data);
     }
     void attach(RTCGeometry g, unsigned id) {
@@ -327,7 +327,7 @@ public:
 
 private:
     Vec3 trace(Vec3 origin, Vec3 direction, int bounce) {
-        // The shapes beside Embree first: where they are hit is where Embree's ray ends.
+        // The shapes that are not Embree's first: Embree's ray ends at their closest hit.
         float nearest = miss;
         const Plane* plane = nullptr;
         const Cylinder* cylinder = nullptr;
@@ -345,7 +345,7 @@ private:
         Vec3 point = origin + ray.ray.tfar * direction, normal;
         const Material* material;
         if (ray.hit.geomID == Accelerator::spheres) {
-            // Back onto the sphere: the distance is only good to its own last digits.
+            // Snap to the sphere: the error of the distance grows with the distance.
             const Sphere& s = scene_.spheres[ray.hit.primID];
             normal = unit(point - s.center);
             point = s.center + s.radius * normal;
@@ -365,8 +365,8 @@ private:
             return scene_.background;
         }
         if (dot(normal, direction) > 0) normal = -normal;
-        // What goes on from here starts on the ray's side of the surface, some units of the last
-        // place of the coordinates away from it.
+        // The next rays start on this ray's side of the surface, several ulps of the coordinates
+        // away from it.
         const float lift = 0x1p-19f * std::max(largest(point), largest(origin));
         const Vec3 start = point + lift * normal;
 
@@ -426,7 +426,7 @@ private:
     RTCIntersectContext coherent_, incoherent_;
 };
 
-// ---------------------------------------------------------------- the picture
+// ---------------------------------------------------------------- the image
 
 using Image = std::vector<Vec3>;  // row by row, the top one first
 
@@ -435,7 +435,7 @@ void no_denormals() {
     _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
 }
 
-// Tiles, taken by whoever is free.
+// Dynamic scheduling of tiles.
 void render(const Scene& scene, const Accelerator& accelerator, int threads, Image& image) {
     constexpr int side = 16;
     const int across = (scene.width + side - 1) / side, down = (scene.height + side - 1) / side;
@@ -472,7 +472,7 @@ constexpr const char* usage =
     "  --antialiasing N        lattice density, 0..32, instead of the scene's\n"
     "  --repeat R              timed runs, default 1\n"
     "  --no-robust             Embree's scene without RTC_SCENE_FLAG_ROBUST\n"
-    "  -o FILE                 the picture, a PPM\n";
+    "  -o FILE                 the image, a PPM\n";
 
 int integer(const std::string& text, int low, int high, const char* what) {
     char* end = nullptr;

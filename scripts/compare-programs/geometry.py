@@ -1,4 +1,4 @@
-"""The little vector arithmetic that the converters need."""
+"""The vector arithmetic that the converters need."""
 
 import math
 
@@ -20,7 +20,7 @@ def unit(a):
 
 
 def frame(position, look_at, up):
-    """Forward, right and up of the image model's camera."""
+    """Returns forward, right and up of the image model's camera."""
     forward = unit(minus(look_at, position))
     right = unit(cross(forward, up))
     return forward, right, cross(right, forward)

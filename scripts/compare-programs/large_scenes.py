@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Writes scenes of many primitives, 800 x 600, one ray a pixel, the same bytes every time.
+"""Writes scenes of many primitives, 800 x 600, one ray a pixel. The bytes are always the same.
 
     large_scenes.py FOLDER [KIND[=N] ...]     (default: flake cloud=100000 bumpy=100000)
 
-    flake[=DEPTH]    spheres on spheres over a mirroring floor, 2 lights, 4 reflections; depth 4 are 937
-    cloud=N          N matte spheres in a cube, 1 light; the picture as full whatever N is
+    flake[=DEPTH]    spheres on spheres over a mirror floor, 2 lights, 4 reflections; 937 at depth 4
+    cloud=N          N matte spheres in a cube, 1 light; they fill the image equally for every N
     bumpy=N          a bumpy sphere of about N triangles, read from an OBJ file beside it, 1 light
 
 A file's name is its kind and number: cloud-1000.toml, bumpy-1000.toml with bumpy-1000.obj.
@@ -50,7 +50,7 @@ reflection = {reflection}
 
 
 def vector(values):
-    """Few digits, so that every program reads the same scene."""
+    """Formats a vector with few digits, so that every program reads the same scene."""
     return "[" + ", ".join(repr(round(float(v), 7) + 0.0) for v in values) + "]"
 
 
@@ -63,7 +63,7 @@ def sphere(center, radius, material):
 
 
 def flake(path, depth):
-    """Each sphere carries six of 0.4 its radius along the axes, but none where it stands itself."""
+    """Each sphere carries six of 0.4 its radius on the axes, except where it touches its parent."""
     parts = []
 
     def grow(center, radius, level, back):
@@ -95,7 +95,7 @@ def flake(path, depth):
 
 
 def cloud(path, count):
-    """The more spheres, the smaller: a ray meets as many of them whatever their number."""
+    """The radius falls as the number grows, so a ray meets equally many spheres in every cloud."""
     generator = random.Random(count)
     mean = 0.1 * math.sqrt(100_000 / count)
     with open(path + ".toml", "w", encoding="ascii", newline="\n") as out:
@@ -114,7 +114,7 @@ def cloud(path, count):
 
 
 def bumpy(path, count):
-    """Rings of quadrilaterals, each two triangles; at the poles one."""
+    """Rings of quadrilaterals of two triangles each, and of single triangles at the poles."""
     rings = max(3, round(math.sqrt(count / 4)))
     around = max(3, round(count / (2 * (rings - 1))))
     with open(path + ".obj", "w", encoding="ascii", newline="\n") as out:

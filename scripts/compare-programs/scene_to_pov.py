@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Turns a scene file into a scene of POV-Ray 3.7.
+"""Converts a scene file to a scene of POV-Ray 3.7.
 
     scene_to_pov.py SCENE.toml [WIDTHxHEIGHT]      (to standard output)
 
-The size only matters for its proportions; the number of pixels and of samples are options of povray.
+Only the proportions of the size matter: the pixels and the samples are options of povray.
 """
 
 import sys
@@ -20,7 +20,7 @@ def scene_to_pov(parts, width, height):
     position, look_at, up, focal_length, screen_width = parts["camera"]
     background, max_reflections, _ = parts["render"]
     forward, right, up = frame(position, look_at, up)
-    # Light weights above 1/255 only, POV-Ray's default, would stop mirrored rays early.
+    # POV-Ray's default would stop mirrored rays whose weight is below 1/255.
     yield f"""#version 3.7;
 global_settings {{ assumed_gamma 1.0 ambient_light rgb 1 max_trace_level {max_reflections + 1} adc_bailout 0 }}
 background {{ rgb {vector(background)} }}
@@ -32,19 +32,19 @@ camera {{
     for at, color, power in parts["lights"]:
         yield f"light_source {{ {vector(at)} color rgb {vector(times(power, color))} }}\n"
     for i, (color, ambient, diffuse, specular, shininess, k) in enumerate(parts["materials"]):
-        # POV-Ray adds the mirrored colour, the image model blends it in.
+        # POV-Ray adds the mirrored colour; the image model blends it.
         reflection = f" reflection {{ {k:.9g} }}" if k > 0 else ""
         yield (f"#declare M{i} = texture {{ pigment {{ rgb {vector(color)} }} finish {{ "
                f"ambient {(1 - k) * ambient:.9g} diffuse {(1 - k) * diffuse:.9g} "
                f"phong {(1 - k) * specular:.9g} phong_size {shininess}{reflection} }} }}\n")
     for point, normal, m in parts["planes"]:
-        # Moved there: POV-Ray wants the distance from the origin.
+        # Translated: POV-Ray expects the distance from the origin.
         yield f"plane {{ {vector(normal)}, 0 texture {{ M{m} }} translate {vector(point)} }}\n"
     for center, radius, m in parts["spheres"]:
         yield f"sphere {{ {vector(center)}, {radius:.9g} texture {{ M{m} }} }}\n"
     for bottom, top, radius, m in parts["cylinders"]:
         yield f"cylinder {{ {vector(bottom)}, {vector(top)}, {radius:.9g} open texture {{ M{m} }} }}\n"
-    # Many triangles as a mesh of each material, which POV-Ray stores and traverses best.
+    # Many triangles become a mesh for each material, which POV-Ray stores and traverses best.
     by_material = {}
     for corners, m in parts["triangles"]:
         by_material.setdefault(m, []).append(corners)

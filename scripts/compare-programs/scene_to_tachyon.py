@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Turns a scene file into a scene of tachyon 0.99.
+"""Converts a scene file to a scene of tachyon 0.99.
 
     scene_to_tachyon.py SCENE.toml [WIDTHxHEIGHT]      (to standard output)
 
@@ -25,8 +25,8 @@ def scene_to_tachyon(parts, width, height):
     position, look_at, up, focal_length, screen_width = parts["camera"]
     background, max_reflections, _ = parts["render"]
     forward, _, up = frame(position, look_at, up)
-    # The screen at the distance 1: left, right, bottom, top. Tachyon shoots through the pixels' corners,
-    # so it lies half a pixel to the left and below.
+    # The screen at distance 1: left, right, bottom, top. Tachyon's rays go through the corners of
+    # pixels, so the screen is shifted half a pixel to the left and down.
     pixel = screen_width / width / focal_length
     sides = [pixel * (v - 0.5) for v in (-width / 2, width / 2, -height / 2, height / 2)]
     yield f"""BEGIN_SCENE
@@ -43,7 +43,7 @@ BACKGROUND {row(background)}
     for at, light, power in parts["lights"]:
         yield f"LIGHT CENTER {point(at)} RAD 0.001 COLOR {row(times(power, light))}\n"
     for i, (own, ambient, diffuse, specular, shininess, k) in enumerate(parts["materials"]):
-        # SPECULAR is what tachyon calls the mirror; it adds the colour, the image model blends it in.
+        # SPECULAR is tachyon's mirror. It adds the mirrored colour; the image model blends it.
         yield (f"TEXDEF M{i} AMBIENT {(1 - k) * ambient:.9g} DIFFUSE {(1 - k) * diffuse:.9g} SPECULAR {k:.9g} "
                f"OPACITY 1 PHONG PLASTIC {(1 - k) * specular:.9g} PHONG_SIZE {shininess} "
                f"COLOR {row(own)} TEXFUNC 0\n")

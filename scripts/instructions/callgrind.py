@@ -1,4 +1,4 @@
-"""Instructions of a rendering, as callgrind counts them. Python 3.11 or later, no packages."""
+"""Counts the instructions of a rendering with callgrind. Python 3.11 or later, no packages."""
 
 import os
 import platform
@@ -11,18 +11,18 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 TARGET = ROOT / "target" / "instructions"
-# Of scenes that are written for a count.
+# Scenes that are written for a count.
 SCENES = TARGET / "scenes"
 
-# A processor that every valgrind knows, whatever machine this is.
+# A processor that every version of valgrind knows.
 RUSTFLAGS = "-Ctarget-cpu=x86-64-v3"
 
-# What is counted: the loop over the tiles, and what it calls.
+# The counted function: the loop over the tiles, with everything that it calls.
 LOOP = re.compile(r"_R.*TileByTile.*Renderer6render|_ZN.*TileByTile.*Renderer.*6render17h[0-9a-f]{16}E")
 
 
 class Failure(Exception):
-    """Why nothing could be counted."""
+    """A reason why nothing could be counted."""
 
 
 def run(command, **options):
@@ -33,9 +33,9 @@ def run(command, **options):
 
 
 def why_not():
-    """Why nothing can be counted here, if so."""
+    """Returns why nothing can be counted on this machine, or None."""
     if platform.machine() not in ("x86_64", "AMD64"):
-        return "the counts are of x86-64"
+        return "the counts are for x86-64"
     missing = [tool for tool in ("valgrind", "nm") if not shutil.which(tool)]
     if missing:
         return f"{' and '.join(missing)} missing (Debian: apt-get install valgrind binutils)"
@@ -43,7 +43,7 @@ def why_not():
 
 
 def build():
-    """The program, and the name that callgrind knows its loop by."""
+    """Builds the program. Returns its path and the symbol of its loop."""
     environment = {**os.environ, "RUSTFLAGS": RUSTFLAGS, "CARGO_TARGET_DIR": str(TARGET)}
     environment.pop("CARGO_ENCODED_RUSTFLAGS", None)
     command = ["cargo", "build", "--release", "--locked", "--package", "rayweave"]
@@ -53,12 +53,13 @@ def build():
     symbols = {line.split()[-1] for line in run(["nm", program]).splitlines()}
     loops = [symbol for symbol in symbols if LOOP.fullmatch(symbol)]
     if len(loops) != 1:
-        raise Failure(f"not one function is the sequential strategy's loop (LOOP in this script): {loops}")
+        raise Failure("expected one function to be the sequential strategy's loop (LOOP in this script), "
+                      f"got {loops}")
     return program, loops[0]
 
 
 def count(program, loop, words):
-    """The instructions between entering and leaving the loop, without start, reading and writing; and the picture's digest."""
+    """Returns the instructions within the loop, without start and files, and the image's digest."""
     scene, *options = words.split()
     if "/" not in scene:
         scene = SCENES / scene

@@ -1,7 +1,7 @@
-// A ray tracer the way a student's lab report describes one: an array of pointers to
-// primitives, a virtual `intersect`, single precision, every ray tried against every
-// primitive, (2s + 1)^2 rays a pixel, threads over the columns of the picture. The report's
-// slips in the formulas are mended, its method is kept: this is the program to compare with.
+// A ray tracer as a student's lab report describes one, to compare rayweave with: an array of
+// pointers to primitives, a virtual `intersect`, single precision, every ray tested against every
+// primitive, (2s + 1)^2 rays a pixel, threads over the columns of the image. The errors in the
+// report's formulas are corrected, its method is kept.
 //
 // It reads the text that scene_to_text.py writes; README.md says how to run it.
 
@@ -52,7 +52,7 @@ struct Ray {
 };
 
 constexpr float miss = std::numeric_limits<float>::infinity();
-constexpr float offset = 1e-3f;  // a nearer hit is taken for the surface the ray starts on
+constexpr float offset = 1e-3f;  // a nearer hit counts as the surface that the ray starts on
 
 struct Material {
     Vec3 color;
@@ -66,7 +66,7 @@ public:
     explicit Primitive(const Material* m) : material(m) {}
     virtual ~Primitive() = default;
     virtual float intersect(const Ray& ray) const = 0;  // smallest t > offset, or `miss`
-    // Of unit length even where rounding has put the point beside the surface; on either side.
+    // A unit vector, even if rounding has put the point beside the surface; towards either side.
     virtual Vec3 normal(const Vec3& point) const = 0;
     const Material* const material;
 };
@@ -301,7 +301,7 @@ std::vector<Sample> sample_grid(int s) {
     return grid;
 }
 
-// With COUNTING false nothing is counted, and no code for it is left.
+// With COUNTING false nothing is counted, and the compiler removes the code for it.
 template <bool COUNTING>
 class Tracer {
 public:
@@ -384,7 +384,7 @@ private:
     const float pixel_;
 };
 
-// ---------------------------------------------------------------- the picture
+// ---------------------------------------------------------------- the image
 
 using Image = std::vector<Vec3>;  // row by row, the top one first
 
@@ -457,8 +457,8 @@ constexpr const char* usage =
     "  --size WxH              pixels, instead of the scene's\n"
     "  --antialiasing N        lattice density, 0..32, instead of the scene's\n"
     "  --repeat R              timed runs, default 1\n"
-    "  --count                 count the rays, in a run of its own before the timed ones\n"
-    "  -o FILE                 the picture: .ppm or .pfm\n";
+    "  --count                 count the rays in a separate run before the timed ones\n"
+    "  -o FILE                 the image: .ppm or .pfm\n";
 
 int integer(const std::string& text, int low, int high, const char* what) {
     char* end = nullptr;
