@@ -1,9 +1,9 @@
 //! What no single crate can test, and what such tests are made of.
 
-/// Scenes of many primitives.
-pub mod crowd;
 /// The places where the report that this project starts from is wrong, each with a witness.
 pub mod errata;
+/// Scenes of many primitives.
+pub mod many_primitives;
 /// Closed meshes.
 pub mod meshes;
 /// How far a picture is from the truth.

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use rayweave_core::scene::{Cylinder, Sphere, Triangle};
 use rayweave_core::{Acceleration, Execution, Lanes, Precision, Scene};
-use rayweave_tests::crowd::{Arrangement, Shape, crowd, meshes};
+use rayweave_tests::many_primitives::{Arrangement, Shape, many_primitives, meshes};
 use rayweave_tests::picture::{difference, in_tiles, plain};
 use rayweave_tests::transform::{enlarged, moved};
 
@@ -32,13 +32,13 @@ fn assert_acceleration_agrees(scene: &Scene, size: (u32, u32), name: &str) {
 }
 
 /// `count` primitives of every shape in every arrangement, at the origin and far from it.
-fn crowds_agree(count: usize, size: (u32, u32), seeds: std::ops::Range<u64>) {
+fn all_agree(count: usize, size: (u32, u32), seeds: std::ops::Range<u64>) {
     for (shape, arrangement) in Shape::ALL
         .into_iter()
         .flat_map(|shape| Arrangement::ALL.map(|arrangement| (shape, arrangement)))
     {
         for seed in seeds.clone() {
-            let scene = crowd(seed, count, shape, arrangement);
+            let scene = many_primitives(seed, count, shape, arrangement);
             // Far away a rounding of `f32` is 1/1024, and so is a box's margin many times larger.
             let offset = if seed % 2 == 0 { DVec3::ZERO } else { DVec3::new(1e4, -7e3, 8e3) };
             let name =
@@ -52,20 +52,20 @@ fn crowds_agree(count: usize, size: (u32, u32), seeds: std::ops::Range<u64>) {
 /// search decides, in hierarchies of few levels.
 #[test]
 fn a_hundred_primitives() {
-    crowds_agree(100, (24, 18), 0..6);
+    all_agree(100, (24, 18), 0..6);
 }
 
 /// Catches the same in deeper hierarchies.
 #[test]
 fn a_thousand_primitives() {
-    crowds_agree(1000, (24, 18), 6..8);
+    all_agree(1000, (24, 18), 6..8);
 }
 
 /// Catches a stack that overflows, or numbers of leaves that run into each other.
 #[test]
 fn ten_thousand_primitives() {
     for (seed, arrangement) in (0..).zip(Arrangement::ALL) {
-        let scene = crowd(seed, 10_000, Shape::Any, arrangement);
+        let scene = many_primitives(seed, 10_000, Shape::Any, arrangement);
         assert_acceleration_agrees(&scene, (24, 18), &format!("{arrangement:?}"));
     }
 }
@@ -85,7 +85,7 @@ fn closed_meshes() {
 fn every_small_count() {
     for count in 1..=40 {
         for (seed, arrangement) in (0..).zip([Arrangement::Overlapping, Arrangement::Copies]) {
-            let scene = crowd(seed, count, Shape::Any, arrangement);
+            let scene = many_primitives(seed, count, Shape::Any, arrangement);
             assert_acceleration_agrees(&scene, (24, 18), &format!("{count} x {arrangement:?}"));
         }
     }
@@ -99,7 +99,7 @@ fn one_primitive_many_times() {
         .into_iter()
         .flat_map(|shape| [12, 40, 100, 1000].map(|count| (shape, count)))
     {
-        let mut scene = crowd(3, 1, shape, Arrangement::Overlapping);
+        let mut scene = many_primitives(3, 1, shape, Arrangement::Overlapping);
         // The camera looks at it.
         let corner = scene.triangles.first().map(|t| t.vertices.iter().sum::<DVec3>() / 3.0);
         let middle = scene.spheres.first().map(|s| s.center).or(corner);
@@ -139,7 +139,7 @@ proptest! {
 
     /// Catches the same anywhere, at every scale and distance.
     #[test]
-    fn random_crowds(
+    fn many_primitives_by_chance(
         seed: u64,
         count in 12..200usize,
         shape in prop::sample::select(Shape::ALL.to_vec()),
@@ -150,7 +150,7 @@ proptest! {
         lanes in prop::sample::select(Lanes::ALL.to_vec()),
     ) {
         let offset = DVec3::new(offset, -0.7 * offset, 0.3 * offset);
-        let scene = enlarged(&moved(&crowd(seed, count, shape, arrangement), offset), scale);
+        let scene = enlarged(&moved(&many_primitives(seed, count, shape, arrangement), offset), scale);
         prop_assume!(scene.check().is_ok());
         let scene = scene.with_arithmetic(precision);
         let right = in_tiles(&scene, (16, 12), plain(), 1000);

@@ -66,7 +66,7 @@ impl Arrangement {
 /// lights, some of them mirrors; the camera is beside them or among them. Some have a plane as
 /// well.
 #[must_use]
-pub fn crowd(seed: u64, count: usize, shape: Shape, arrangement: Arrangement) -> Scene {
+pub fn many_primitives(seed: u64, count: usize, shape: Shape, arrangement: Arrangement) -> Scene {
     let mut draw = Draw::new(seed);
     let mut scene = nothing(&mut draw, arrangement);
     let places: Vec<DVec3> = (0..20).map(|_| draw.within(5.0)).collect();
