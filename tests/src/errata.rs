@@ -11,7 +11,7 @@ use rayweave_core::scene::{
 
 /// One ray against one primitive.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RayWitness {
+pub struct RayCase {
     /// Which one it is.
     pub name: &'static str,
     /// What the report says and what comes of it here; in brackets, what is near it and right.
@@ -35,7 +35,7 @@ pub struct Hit {
     pub normal: DVec3,
 }
 
-impl RayWitness {
+impl RayCase {
     /// How far the right hit is from the ray's origin, in scene units.
     #[must_use]
     pub fn distance(&self) -> Option<f64> {
@@ -45,7 +45,7 @@ impl RayWitness {
 
 /// A picture of one pixel, without anti-aliasing.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ShadingWitness {
+pub struct ShadingCase {
     /// Which one it is.
     pub name: &'static str,
     /// What the report says, and what comes of it here.
@@ -58,7 +58,7 @@ pub struct ShadingWitness {
 
 /// How many rays a whole picture needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct LatticeWitness {
+pub struct LatticeCase {
     /// What the report says, and what comes of it here.
     pub report: &'static str,
     /// The picture's size in pixels.
@@ -70,15 +70,15 @@ pub struct LatticeWitness {
 }
 
 /// The report's slips about a hit.
-pub const RAYS: [RayWitness; 25] = [
-    RayWitness {
+pub const RAYS: [RayCase; 25] = [
+    RayCase {
         name: "sphere without its centre: a miss",
         report: "delta = 4<P,u>^2 - 4<u,u><P, P - r^2>: 3.24 and a hit at t = 1.1, but delta is -1.76",
         primitive: sphere([-0.5, 1.0, 2.0], 0.9),
         ray: ray([0.0, 0.0, -2.0], [0.0, 0.0, 1.0]),
         expected: None,
     },
-    RayWitness {
+    RayCase {
         name: "sphere without its centre: a hit",
         report: "delta = 4<P,u>^2 - 4<u,u><P, P - r^2>, with the centre missing",
         primitive: sphere([-0.5, 1.0, 2.0], 0.9),
@@ -89,77 +89,77 @@ pub const RAYS: [RayWitness; 25] = [
             [0.1203858530857692, -0.2407717061715384, -0.9630868246861536],
         ),
     },
-    RayWitness {
+    RayCase {
         name: "far sphere",
         report: "delta = 0 is tangency: in 32 bits delta is 0 instead of 4 here, and t = 10000",
         primitive: sphere([0.0, 0.0, 1e4], 1.0),
         ray: ray([0.0; 3], [0.0, 0.0, 1.0]),
         expected: hit(9999.0, [0.0, 0.0, 9999.0], [0.0, 0.0, -1.0]),
     },
-    RayWitness {
+    RayCase {
         name: "tangent",
         report: "delta = 0 is tangency: it hits, but no case of its own is needed",
         primitive: sphere([1.0, 0.0, 5.0], 1.0),
         ray: ray([0.0; 3], [0.0, 0.0, 1.0]),
         expected: hit(5.0, [0.0, 0.0, 5.0], [-1.0, 0.0, 0.0]),
     },
-    RayWitness {
+    RayCase {
         name: "tangent behind",
         report: "the branch for delta = 0 does not test the sign: t = -5 is the nearest hit",
         primitive: sphere([0.0, 1.0, -5.0], 1.0),
         ray: ray([0.0; 3], [0.0, 0.0, 1.0]),
         expected: None,
     },
-    RayWitness {
+    RayCase {
         name: "from inside a sphere",
         report: "(the smaller root, -3, is behind: the other one is the hit)",
         primitive: sphere([0.0; 3], 2.0),
         ray: ray([0.0, 0.0, 1.0], [0.0, 0.0, 1.0]),
         expected: hit(1.0, [0.0, 0.0, 2.0], [0.0, 0.0, -1.0]),
     },
-    RayWitness {
+    RayCase {
         name: "nearly parallel to a plane",
         report: "parallel if and only if <u,n> = 0: as luck has it, in floats; this ray is not",
         primitive: plane([0.0, 1.0, 0.0], [0.0, 1.0, 0.0]),
         ray: ray([0.0; 3], [1.0, 1e-10, 0.0]),
         expected: hit(1e10, [1e10, 1.0, 0.0], [0.0, -1.0, 0.0]),
     },
-    RayWitness {
+    RayCase {
         name: "parallel to a plane",
         report: "parallel if and only if <u,n> = 0: as luck has it, in floats; this ray is",
         primitive: plane([0.0, 1.0, 0.0], [1.0, 1.0, 0.0]),
         ray: ray([0.0; 3], [1.0, -1.0, 0.0]),
         expected: None,
     },
-    RayWitness {
+    RayCase {
         name: "in a plane",
         report: "parallel if and only if <u,n> = 0: here the numerator is 0 too",
         primitive: plane([0.0; 3], [0.0, 1.0, 0.0]),
         ray: ray([-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]),
         expected: None,
     },
-    RayWitness {
+    RayCase {
         name: "plane's point far aside",
         report: "t is the distance to the plane's point: 150.02, but the hit is 5.10 away",
         primitive: plane([150.0, 1.0, 0.0], [0.0, 1.0, 0.0]),
         ray: ray([0.0, 0.0, -2.0], [0.0, 1.0, 5.0]),
         expected: hit(1.0, [0.0, 1.0, 3.0], [0.0, -1.0, 0.0]),
     },
-    RayWitness {
+    RayCase {
         name: "cylinder's axis",
         report: "x^2 + y^2 = r^2: then this ray would go along the axis and miss",
         primitive: cylinder([0.0, -1.0, 0.0], 1.0, 1.0),
         ray: ray([0.0, 0.0, -5.0], [0.0, 0.0, 1.0]),
         expected: hit(4.0, [0.0, 0.0, -1.0], [0.0, 0.0, -1.0]),
     },
-    RayWitness {
+    RayCase {
         name: "cylinder's radius: a miss",
         report: "C ends in - r, not - r^2: a hit 6.822 away, but the axis is .1987 from the ray",
         primitive: cylinder([-1.0, -1.0, 5.0], 2.0, 0.1),
         ray: ray([0.0, 0.0, -2.0], [-0.8, 0.0, 7.0]),
         expected: None,
     },
-    RayWitness {
+    RayCase {
         name: "cylinder's radius: a hit",
         report: "C ends in - r, not - r^2: the wall stands at the square root of the radius",
         primitive: cylinder([-1.0, -1.0, 5.0], 2.0, 0.1),
@@ -170,42 +170,42 @@ pub const RAYS: [RayWitness; 25] = [
             [0.1414213562373095, 0.0, -0.9899494936611666],
         ),
     },
-    RayWitness {
+    RayCase {
         name: "far wall through the open end",
         report: "the nearest root, then its height: a miss, but the far wall is 4.472 away",
         primitive: cylinder([0.0; 3], 1.0, 1.0),
         ray: ray([-3.0, 2.5, 0.0], [2.0, -1.0, 0.0]),
         expected: hit(2.0, [1.0, 0.5, 0.0], [-1.0, 0.0, 0.0]),
     },
-    RayWitness {
+    RayCase {
         name: "along a cylinder's axis",
         report: "A = 0 is not handled: t = 0/0",
         primitive: cylinder([0.0; 3], 1.0, 1.0),
         ray: ray([0.5, 5.0, 0.0], [0.0, -1.0, 0.0]),
         expected: None,
     },
-    RayWitness {
+    RayCase {
         name: "along a cylinder's wall",
         report: "A = 0 is not handled: t = 0/0, and this ray lies in the wall",
         primitive: cylinder([0.0; 3], 1.0, 1.0),
         ray: ray([1.0, 5.0, 0.0], [0.0, -1.0, 0.0]),
         expected: None,
     },
-    RayWitness {
+    RayCase {
         name: "skew triangle's centroid",
         report: "AB, AC, n are the rows of the basis matrix: (.717, 2.202, -1.196), rejected",
         primitive: triangle(SKEW),
         ray: ray([0.0, 0.0, -2.0], [11.0, 8.0, 70.0]),
         expected: hit(1.0 / 15.0, [11.0 / 15.0, 8.0 / 15.0, 8.0 / 3.0], SKEW_NORMAL),
     },
-    RayWitness {
+    RayCase {
         name: "right triangle's centroid",
         report: "AB, AC, n are the rows of the basis matrix: no difference, it is symmetric",
         primitive: triangle([[0.0, 0.0, 2.0], [1.0, 0.0, 2.0], [0.0, 1.0, 2.0]]),
         ray: ray([0.0, 0.0, -2.0], [1.0, 1.0, 12.0]),
         expected: hit(1.0 / 3.0, [1.0 / 3.0, 1.0 / 3.0, 2.0], [0.0, 0.0, -1.0]),
     },
-    RayWitness {
+    RayCase {
         name: "triangle from its corner",
         report: "OM where AM is meant: (-1.667, .583, -.354), rejected",
         primitive: triangle([[0.5, 1.0, 2.0], [0.0, 0.5, 1.0], [-0.5, 0.0, 2.0]]),
@@ -216,42 +216,42 @@ pub const RAYS: [RayWitness; 25] = [
             [std::f64::consts::FRAC_1_SQRT_2, -std::f64::consts::FRAC_1_SQRT_2, 0.0],
         ),
     },
-    RayWitness {
+    RayCase {
         name: "triangle the other way round",
         report: "n = AC x AB against <AB,AM> for AB x AM: every product is negative, all is rejected",
         primitive: triangle([SKEW[0], SKEW[2], SKEW[1]]),
         ray: ray([0.0, 0.0, -2.0], [11.0, 8.0, 70.0]),
         expected: hit(1.0 / 15.0, [11.0 / 15.0, 8.0 / 15.0, 8.0 / 3.0], SKEW_NORMAL),
     },
-    RayWitness {
+    RayCase {
         name: "triangle from behind",
         report: "normals are not turned towards the viewer",
         primitive: triangle([[0.0, 0.0, 2.0], [1.0, 0.0, 2.0], [0.0, 1.0, 2.0]]),
         ray: ray([0.25, 0.25, 6.0], [0.0, 0.0, -1.0]),
         expected: hit(4.0, [0.25, 0.25, 2.0], [0.0, 0.0, 1.0]),
     },
-    RayWitness {
+    RayCase {
         name: "triangle's edge",
         report: "(one of the three products is 0: the edges belong to the triangle)",
         primitive: triangle([[0.0, 0.0, 2.0], [1.0, 0.0, 2.0], [0.0, 1.0, 2.0]]),
         ray: ray([0.5, 0.5, 0.0], [0.0, 0.0, 1.0]),
         expected: hit(2.0, [0.5, 0.5, 2.0], [0.0, 0.0, -1.0]),
     },
-    RayWitness {
+    RayCase {
         name: "beside a triangle's edge",
         report: "(just outside the same edge)",
         primitive: triangle([[0.0, 0.0, 2.0], [1.0, 0.0, 2.0], [0.0, 1.0, 2.0]]),
         ray: ray([0.5, 0.5078125, 0.0], [0.0, 0.0, 1.0]),
         expected: None,
     },
-    RayWitness {
+    RayCase {
         name: "in a triangle's plane",
         report: "parallel if and only if <u,n> = 0: here all three products are 0 too",
         primitive: triangle([[0.0, 0.0, 2.0], [1.0, 0.0, 2.0], [0.0, 1.0, 2.0]]),
         ray: ray([-1.0, 0.25, 2.0], [1.0, 0.0, 0.0]),
         expected: None,
     },
-    RayWitness {
+    RayCase {
         name: "triangle behind",
         report: "(all three products agree, but t = -4)",
         primitive: triangle([[0.0, 0.0, 2.0], [1.0, 0.0, 2.0], [0.0, 1.0, 2.0]]),
@@ -261,7 +261,7 @@ pub const RAYS: [RayWitness; 25] = [
 ];
 
 /// The report's 5 x 5 grid on its own picture.
-pub const LATTICE: LatticeWitness = LatticeWitness {
+pub const LATTICE: LatticeCase = LatticeCase {
     report: "5 x 5 rays for each of 500 x 500 pixels, 6,250,000: four of neighbours' fall together",
     size: (500, 500),
     antialiasing: 2,
@@ -270,7 +270,7 @@ pub const LATTICE: LatticeWitness = LatticeWitness {
 
 /// The report's slips about a colour.
 #[must_use]
-pub fn shadings() -> Vec<ShadingWitness> {
+pub fn shadings() -> Vec<ShadingCase> {
     let floor = plane_at([0.0; 3]);
     let ball = |center, radius| Sphere { center: DVec3::from_array(center), radius, material: 0 };
     let from_side = [-4.0, 3.0, 0.0];
@@ -285,7 +285,7 @@ pub fn shadings() -> Vec<ShadingWitness> {
         Scene { planes: vec![floor], ..scene }
     };
     vec![
-        ShadingWitness {
+        ShadingCase {
             name: "the lit side of a triangle",
             report: "normals are not turned towards the viewer: with n = AC x AB, n.l = -.424 and .1 of diffuse",
             scene: Scene {
@@ -297,19 +297,19 @@ pub fn shadings() -> Vec<ShadingWitness> {
             },
             expected: [0.3910457989369001, 0.03653726902163525, 0.03653726902163525],
         },
-        ShadingWitness {
+        ShadingCase {
             name: "the same triangle the other way round",
             report: "normals are not turned towards the viewer: this one happens to be right",
             scene: Scene { triangles: vec![skew], ..from_eye(&[[15.0, -10.0, -10.0]]) },
             expected: [0.3910457989369001, 0.03653726902163525, 0.03653726902163525],
         },
-        ShadingWitness {
+        ShadingCase {
             name: "a triangle lit from behind",
             report: "normals are not turned towards the viewer: with n = AC x AB, n.l = .184 and diffuse",
             scene: Scene { triangles: vec![skew], ..from_eye(&[[-15.0, 10.0, 10.0]]) },
             expected: [0.1, 0.0, 0.0],
         },
-        ShadingWitness {
+        ShadingCase {
             name: "a highlight from below the floor",
             report: "the highlight is not bound to n.l > 0: n.l = -.6, but m.-d = .28",
             scene: Scene {
@@ -318,7 +318,7 @@ pub fn shadings() -> Vec<ShadingWitness> {
             },
             expected: [0.1, 0.0, 0.0],
         },
-        ShadingWitness {
+        ShadingCase {
             name: "a ceiling beyond the light",
             report: "the shadow ray has no end: the light is 23.9 away, the ceiling hit at 45.6",
             scene: Scene {
@@ -327,7 +327,7 @@ pub fn shadings() -> Vec<ShadingWitness> {
             },
             expected: [0.37620140371033356, 0.0, 0.0],
         },
-        ShadingWitness {
+        ShadingCase {
             name: "three lights, all hidden",
             report: "a hidden light gives colour/10: .3 of red",
             scene: Scene {
@@ -341,7 +341,7 @@ pub fn shadings() -> Vec<ShadingWitness> {
             },
             expected: [0.1, 0.0, 0.0],
         },
-        ShadingWitness {
+        ShadingCase {
             name: "the shadow of a tiny sphere",
             report: "shadow rays start 1e-3 away: beyond a sphere of radius 4e-4",
             scene: Scene {
@@ -351,7 +351,7 @@ pub fn shadings() -> Vec<ShadingWitness> {
             },
             expected: [0.1, 0.0, 0.0],
         },
-        ShadingWitness {
+        ShadingCase {
             name: "a floor far from the origin",
             report: "shadow rays start 1e-3 away: in 32 bits 32768 + 1e-3 = 32768",
             scene: Scene {
@@ -360,13 +360,13 @@ pub fn shadings() -> Vec<ShadingWitness> {
             },
             expected: [0.844, 0.144, 0.144],
         },
-        ShadingWitness {
+        ShadingCase {
             name: "a full mirror",
             report: "(c + k c') / (1 + k): k = 1 is half a mirror, (.15, .2, .3)",
             scene: mirror(1.0),
             expected: [0.2, 0.4, 0.6],
         },
-        ShadingWitness {
+        ShadingCase {
             name: "a part mirror",
             report: "(c + k c') / (1 + k) for k = 1/4 is this one with k/(1 + k) = 1/5",
             scene: mirror(0.2),

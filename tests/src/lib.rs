@@ -1,6 +1,6 @@
 //! What no single crate can test, and what such tests are made of.
 
-/// The places where the report that this project starts from is wrong, each with a witness.
+/// The places where the report that this project starts from is wrong, as cases.
 pub mod errata;
 /// Scenes of many primitives.
 pub mod many_primitives;

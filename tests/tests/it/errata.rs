@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use rayweave_core::{Caster, Precision, Scene};
-use rayweave_tests::errata::{LATTICE, LatticeWitness, RAYS, shadings};
+use rayweave_tests::errata::{LATTICE, LatticeCase, RAYS, shadings};
 use rayweave_tests::model::{Primitive, render, samples};
 use rayweave_tests::picture;
 use std::collections::HashSet;
@@ -11,16 +11,16 @@ use std::collections::HashSet;
 
 #[test]
 fn rays_hit_where_they_should() {
-    for witness in RAYS {
-        let what = format!("{}: {}", witness.name, witness.report);
-        let found = witness.primitive.hit(&witness.ray);
-        let (Some(t), Some(expected)) = (found, witness.expected) else {
-            assert_eq!(found.is_some(), witness.expected.is_some(), "{what}: {found:?}");
+    for case in RAYS {
+        let what = format!("{}: {}", case.name, case.report);
+        let found = case.primitive.hit(&case.ray);
+        let (Some(t), Some(expected)) = (found, case.expected) else {
+            assert_eq!(found.is_some(), case.expected.is_some(), "{what}: {found:?}");
             continue;
         };
-        let point = witness.ray.at(t);
-        let normal = witness.primitive.normal(point);
-        let turned = if normal.dot(witness.ray.direction) > 0.0 { -normal } else { normal };
+        let point = case.ray.at(t);
+        let normal = case.primitive.normal(point);
+        let turned = if normal.dot(case.ray.direction) > 0.0 { -normal } else { normal };
         assert!((t / expected.t - 1.0).abs() < 1e-14, "{what}: {t}");
         assert!(
             point.distance(expected.point) < 1e-14 * (1.0 + expected.point.length()),
@@ -31,39 +31,35 @@ fn rays_hit_where_they_should() {
 }
 
 #[test]
-fn witnesses_agree_with_themselves() {
-    for witness in RAYS {
-        let Some(expected) = witness.expected else { continue };
-        let there = witness.ray.at(expected.t);
-        assert!(
-            there.distance(expected.point) < 1e-14 * (1.0 + there.length()),
-            "{}",
-            witness.name
-        );
-        assert!(expected.normal.is_normalized(), "{}", witness.name);
-        assert!(expected.normal.dot(witness.ray.direction) <= 0.0, "{}", witness.name);
+fn cases_agree_with_themselves() {
+    for case in RAYS {
+        let Some(expected) = case.expected else { continue };
+        let there = case.ray.at(expected.t);
+        assert!(there.distance(expected.point) < 1e-14 * (1.0 + there.length()), "{}", case.name);
+        assert!(expected.normal.is_normalized(), "{}", case.name);
+        assert!(expected.normal.dot(case.ray.direction) <= 0.0, "{}", case.name);
     }
     for (name, square) in
         [("far wall through the open end", 20.0), ("plane's point far aside", 26.0)]
     {
-        let distance = RAYS.iter().find(|witness| witness.name == name).and_then(|w| w.distance());
+        let distance = RAYS.iter().find(|case| case.name == name).and_then(|w| w.distance());
         assert!(distance.is_some_and(|d| (d * d - square).abs() < 1e-13), "{name}: {distance:?}");
     }
 }
 
 #[test]
 fn colours_are_as_they_should() {
-    for witness in shadings() {
-        assert_eq!(witness.scene.check(), Ok(()), "{}", witness.name);
-        let found = DVec3::from_array(render(&witness.scene, 1, 1)[0]);
-        let error = found.distance(DVec3::from_array(witness.expected));
-        assert!(error < 1e-11, "{}: {}: {found}", witness.name, witness.report);
+    for case in shadings() {
+        assert_eq!(case.scene.check(), Ok(()), "{}", case.name);
+        let found = DVec3::from_array(render(&case.scene, 1, 1)[0]);
+        let error = found.distance(DVec3::from_array(case.expected));
+        assert!(error < 1e-11, "{}: {}: {found}", case.name, case.report);
     }
 }
 
 #[test]
 fn neighbours_share_their_samples() {
-    let LatticeWitness { size: (width, height), antialiasing, rays, .. } = LATTICE;
+    let LatticeCase { size: (width, height), antialiasing, rays, .. } = LATTICE;
     let offsets: Vec<_> = samples(antialiasing).iter().map(|s| (s.dx, s.dy)).collect();
     assert_eq!(offsets.len(), 25);
     // All offsets are multiples of 1/2, so that these sums are exact.
@@ -82,7 +78,7 @@ fn neighbours_share_their_samples() {
 const PRECISIONS: [Precision; 2] = [Precision::F32, Precision::F64];
 
 /// How far an answer may be off, relative to its size. Each takes a dozen or so roundings, those of
-/// the witness's decimals among them, and none of them cancels or meets its surface at less than
+/// the case's decimals among them, and none of them cancels or meets its surface at less than
 /// 20 degrees, but for those whose numbers are exact: 16 units of roundoff. The worst takes 6.
 fn tolerance(precision: Precision) -> f64 {
     16.0 * match precision {
@@ -107,15 +103,15 @@ fn alone(primitive: Primitive) -> Scene {
 /// Catches each of the report's slips about a hit, in either precision.
 #[test]
 fn the_tracer_s_rays_hit_where_they_should() {
-    for (witness, precision) in RAYS.iter().flat_map(|witness| PRECISIONS.map(|p| (witness, p))) {
-        let what = format!("{} in {precision}: {}", witness.name, witness.report);
-        let scene = alone(witness.primitive);
-        let (origin, direction) = (witness.ray.origin, witness.ray.direction);
+    for (case, precision) in RAYS.iter().flat_map(|case| PRECISIONS.map(|p| (case, p))) {
+        let what = format!("{} in {precision}: {}", case.name, case.report);
+        let scene = alone(case.primitive);
+        let (origin, direction) = (case.ray.origin, case.ray.direction);
         let found = Caster::new(&scene.with_arithmetic(precision))
             .expect(&what)
             .closest_hit(origin, direction);
-        let (Some(hit), Some(expected)) = (found, witness.expected) else {
-            assert_eq!(found.is_some(), witness.expected.is_some(), "{what}: {found:?}");
+        let (Some(hit), Some(expected)) = (found, case.expected) else {
+            assert_eq!(found.is_some(), case.expected.is_some(), "{what}: {found:?}");
             continue;
         };
         let tolerance = tolerance(precision);
@@ -133,14 +129,12 @@ fn the_tracer_s_rays_hit_where_they_should() {
 /// through the camera into a picture.
 #[test]
 fn the_tracer_s_colours_are_as_they_should() {
-    for (witness, precision) in
-        shadings().iter().flat_map(|witness| PRECISIONS.map(|p| (witness, p)))
-    {
-        let what = format!("{} in {precision}: {}", witness.name, witness.report);
-        let expected = DVec3::from_array(witness.expected);
-        let camera = witness.scene.camera;
+    for (case, precision) in shadings().iter().flat_map(|case| PRECISIONS.map(|p| (case, p))) {
+        let what = format!("{} in {precision}: {}", case.name, case.report);
+        let expected = DVec3::from_array(case.expected);
+        let camera = case.scene.camera;
         let view = camera.look_at - camera.position;
-        let seen = Caster::new(&witness.scene.with_arithmetic(precision))
+        let seen = Caster::new(&case.scene.with_arithmetic(precision))
             .expect(&what)
             .color(camera.position, view);
         assert!(
@@ -148,7 +142,7 @@ fn the_tracer_s_colours_are_as_they_should() {
             "{what}: {seen:?}"
         );
         // Pictures are kept in `f32`.
-        let picture = picture::of_scene(&witness.scene, 1, 1, precision);
+        let picture = picture::of_scene(&case.scene, 1, 1, precision);
         let pixel = DVec3::from_array(picture.pixels()[0].map(f64::from));
         assert!(pixel.distance(expected) < tolerance(Precision::F32), "{what}: {pixel}");
     }
