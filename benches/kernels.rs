@@ -151,7 +151,7 @@ fn bench_lanes(
         // What was timed is looked at, outside of the timing: the lanes may not change a bit of it.
         if work.is_some() {
             let digest = image.digest();
-            assert_eq!(digest, *expected.get_or_insert(digest), "{name}: another picture");
+            assert_eq!(digest, *expected.get_or_insert(digest), "{name}: another image");
         }
     }
 }

@@ -11,7 +11,7 @@ use rayweave_core::{Execution, Scene, tracer};
 use rayweave_scene_file as scene_file;
 use std::path::Path;
 
-/// A work, its name and the size of its picture.
+/// A work, its name and the size of its image.
 pub struct Load {
     /// In the names of the benches.
     pub name: &'static str,

@@ -1,4 +1,4 @@
-//! Scenes to time rays in: what is there is of one kind, and how many rays a picture takes is
+//! Scenes to time rays in: what is there is of one kind, and how many rays an image takes is
 //! known.
 
 use rayweave_contract::{Image, Tile, Work};
@@ -13,13 +13,13 @@ use std::num::NonZeroU32;
 /// The side of a tile, as the command line's default.
 const TILE: NonZeroU32 = NonZeroU32::new(32).expect("not 0");
 
-/// A picture to be timed.
+/// An image to be timed.
 pub struct Probe {
     scene: Scene,
     width: u32,
     height: u32,
     /// Of its tiles one in so many is rendered: rays are as close to each other as in the whole
-    /// picture, at a part of its time.
+    /// image, at a part of its time.
     one_tile_in: usize,
 }
 
@@ -70,7 +70,7 @@ impl Probe {
         Self::small(Rays::FromEye)
     }
 
-    /// Eight primitives of one kind beside each other, which fill 40 to 85 % of the picture: planes
+    /// Eight primitives of one kind beside each other, which fill 40 to 85 % of the image: planes
     /// all of it, as the walls of a tunnel.
     #[must_use]
     pub fn of(kind: Kind, rays: Rays) -> Self {
@@ -112,7 +112,7 @@ impl Probe {
         probe
     }
 
-    /// Spheres anywhere in a cube, all of it in the picture. The more, the smaller: a ray meets as
+    /// Spheres anywhere in a cube, all of it in the image. The more, the smaller: a ray meets as
     /// many of them whatever their number.
     #[must_use]
     pub fn cloud(count: u32, rays: Rays) -> Self {
@@ -127,13 +127,13 @@ impl Probe {
         Self { scene, width: 800, height: 608, one_tile_in: 59 }
     }
 
-    /// The whole picture of a scene.
+    /// The whole image of a scene.
     #[must_use]
     pub fn whole(scene: Scene, width: u32, height: u32) -> Self {
         Self { scene, width, height, one_tile_in: 1 }
     }
 
-    /// A picture that is 8 wide and 4 high at the origin, where nothing is yet.
+    /// An image that is 8 wide and 4 high at the origin, where nothing is yet.
     fn small(rays: Rays) -> Self {
         Self::whole(scene(8.0, 1.0, rays), 64, 32)
     }
@@ -149,14 +149,14 @@ impl Probe {
         tracer(&scene, self.width, self.height, execution).unwrap_or_else(|e| panic!("{e}"))
     }
 
-    /// A picture for it, without a number in it.
+    /// An image for it, without a number in it.
     ///
     /// # Panics
     ///
     /// No memory.
     #[must_use]
     pub fn image(&self) -> Image {
-        Image::filled(self.width, self.height, [f32::NAN; 3]).expect("a small picture")
+        Image::filled(self.width, self.height, [f32::NAN; 3]).expect("a small image")
     }
 
     /// The tiles that are rendered.

@@ -31,14 +31,14 @@ fn strategies(criterion: &mut Criterion) {
             .sample_size(10)
             .warm_up_time(Duration::from_secs(1))
             .measurement_time(Duration::from_secs(5));
-        let mut image = Image::new(load.width, load.height).expect("a small picture");
+        let mut image = Image::new(load.width, load.height).expect("a small image");
         let mut expected = None;
         for strategy in rayweave_registry::available() {
             let alone = strategy.threads() == Threads::None;
             for &threads in if alone { &[1][..] } else { &counts } {
                 let plan = Plan { threads: NonZeroUsize::new(threads).expect("not 0"), tile: TILE };
                 let mut renderer = strategy.prepare(plan).expect("the strategy is available");
-                // Poisoned: what a strategy does not write is not the picture of the one before it.
+                // Poisoned: what a strategy does not write is not the image of the one before it.
                 image.fill([f32::NAN; 3]);
                 let mut ran = false;
                 group.bench_function(BenchmarkId::new(strategy.name(), threads), |bencher| {
@@ -51,7 +51,7 @@ fn strategies(criterion: &mut Criterion) {
                 // out.
                 if ran {
                     let expected = *expected.get_or_insert_with(|| reference_digest(&load));
-                    assert_eq!(image.digest(), expected, "{}: another picture", strategy.name());
+                    assert_eq!(image.digest(), expected, "{}: another image", strategy.name());
                 }
             }
         }
@@ -59,9 +59,9 @@ fn strategies(criterion: &mut Criterion) {
     }
 }
 
-/// Of the picture that every strategy has to draw.
+/// Of the image that every strategy has to draw.
 fn reference_digest(load: &Load) -> Digest {
-    let mut image = Image::new(load.width, load.height).expect("a small picture");
+    let mut image = Image::new(load.width, load.height).expect("a small image");
     let plan = Plan { threads: NonZeroUsize::MIN, tile: TILE };
     let mut renderer = rayweave_registry::reference().prepare(plan).expect("one thread");
     renderer.render(&*load.work, &mut image).expect("the work does not fail");

@@ -43,7 +43,7 @@ impl RayCase {
     }
 }
 
-/// A picture of one pixel, without anti-aliasing.
+/// An image of one pixel, without anti-aliasing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShadingCase {
     /// Which one it is.
@@ -56,12 +56,12 @@ pub struct ShadingCase {
     pub expected: [f64; 3],
 }
 
-/// How many rays a whole picture needs.
+/// How many rays a whole image needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LatticeCase {
     /// What the report says, and what comes of it here.
     pub report: &'static str,
-    /// The picture's size in pixels.
+    /// The image's size in pixels.
     pub size: (u32, u32),
     /// Its lattice density.
     pub antialiasing: u32,
@@ -260,7 +260,7 @@ pub const RAYS: [RayCase; 25] = [
     },
 ];
 
-/// The report's 5 x 5 grid on its own picture.
+/// The report's 5 x 5 grid on its own image.
 pub const LATTICE: LatticeCase = LatticeCase {
     report: "5 x 5 rays for each of 500 x 500 pixels, 6,250,000: four of neighbours' fall together",
     size: (500, 500),

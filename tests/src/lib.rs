@@ -2,16 +2,16 @@
 
 /// The places where the report that this project starts from is wrong, as cases.
 pub mod errata;
+/// Images that no strategy had a hand in.
+pub mod image;
 /// Scenes of many primitives.
 pub mod many_primitives;
 /// Closed meshes.
 pub mod meshes;
-/// How far a picture is from the truth.
+/// How far an image is from the truth.
 pub mod metrics;
 /// The truth: the image model in wide arithmetic, slow and plain.
 pub mod model;
-/// Pictures that no strategy had a hand in.
-pub mod picture;
 /// Scenes that use everything in the model, drawn by seed.
 pub mod random_scene;
 /// The scenes of the repository.

@@ -7,17 +7,17 @@
 use glam::DVec3;
 use rayweave_core::scene::{Camera, Cylinder, Light, Material, Plane, Scene, Sphere, Triangle};
 
-/// The picture of `scene`, in linear light and not clamped: row by row from the top.
+/// The image of `scene`, in linear light and not clamped: row by row from the top.
 #[must_use]
 pub fn render(scene: &Scene, width: u32, height: u32) -> Vec<[f64; 3]> {
     let model = Model::new(scene);
-    let mut picture = Vec::new();
+    let mut image = Vec::new();
     for j in 0..height {
         for i in 0..width {
-            picture.push(model.pixel(i, j, width, height).to_array());
+            image.push(model.pixel(i, j, width, height).to_array());
         }
     }
-    picture
+    image
 }
 
 /// A half-line. `t` counts in units of `direction`, of whatever length that is.

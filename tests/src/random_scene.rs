@@ -332,7 +332,7 @@ impl Draw {
     }
 }
 
-/// Not a sliver: a picture should not hang on the rounding of its corners.
+/// Not a sliver: an image should not hang on the rounding of its corners.
 fn is_stout([a, b, c]: [DVec3; 3]) -> bool {
     let longest = (b - a).length().max((c - b).length()).max((a - c).length());
     (b - a).cross(c - a).length() > 0.1 * longest * longest
@@ -444,7 +444,7 @@ mod tests {
         }
     }
 
-    /// Most pictures show something, and each kind is seen: triangles from both sides.
+    /// Most images show something, and each kind is seen: triangles from both sides.
     #[test]
     fn the_things_are_seen() {
         let mut seen = [0; 6];

@@ -1,5 +1,5 @@
 //! Whole scenes enlarged, moved and mirrored: camera, lights and things together, so that the
-//! picture stays what it was, or becomes its mirror image.
+//! image stays what it was, or becomes its mirror image.
 
 use glam::DVec3;
 use rayweave_core::Scene;

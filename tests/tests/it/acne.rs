@@ -7,7 +7,7 @@ use rayweave_core::scene::{
     Camera, Cylinder, Light, Material, Plane, RenderSettings, Scene, Sphere, Triangle,
 };
 use rayweave_tests::transform::{enlarged, moved, rounded};
-use rayweave_tests::{model, picture};
+use rayweave_tests::{image, model};
 
 const WIDTH: u32 = 48;
 const HEIGHT: u32 = 36;
@@ -108,16 +108,16 @@ fn what_the_model_lights_is_lit() {
         let mut compared = 0;
         for (name, scene, precision) in everywhere(|scene| scene.lights.push(light)) {
             let truth = model::render(&scene, WIDTH, HEIGHT);
-            let picture = picture::of_scene(&scene, WIDTH, HEIGHT, precision);
+            let image = image::of_scene(&scene, WIDTH, HEIGHT, precision);
             let mut outline = 0;
-            for (index, (right, found)) in truth.iter().zip(picture.pixels()).enumerate() {
+            for (index, (right, found)) in truth.iter().zip(image.pixels()).enumerate() {
                 // At the outline rounding may choose between the thing and the background.
                 if (right[2] == 1.0) != (found[2] == 1.0) {
                     outline += 1;
                     continue;
                 }
                 compared += u32::from(found[2] == 0.0);
-                let place = picture.position(index);
+                let place = image.position(index);
                 let error = (f64::from(found[0]) - right[0]).abs();
                 // Black would be off by as much as the pixel is lit.
                 assert!(
@@ -143,8 +143,8 @@ fn a_convex_mirror_does_not_see_itself() {
         scene.materials[0].reflection = 1.0;
     };
     for (name, scene, precision) in everywhere(mirror) {
-        let picture = picture::of_scene(&scene, WIDTH, HEIGHT, precision);
-        let other = picture.pixels().iter().filter(|color| **color != [1.0; 3]).count();
+        let image = image::of_scene(&scene, WIDTH, HEIGHT, precision);
+        let other = image.pixels().iter().filter(|color| **color != [1.0; 3]).count();
         assert_eq!(other, 0, "{name}: pixels that are not white");
     }
 }

@@ -13,11 +13,11 @@ const HEIGHT: u32 = 72;
 fn render(scene: &Scene, precision: Precision) -> Image {
     let work = tracer(&scene.with_arithmetic(precision), WIDTH, HEIGHT, Execution::default())
         .expect("a sound scene");
-    let mut picture = Image::new(WIDTH, HEIGHT).expect("a small picture");
+    let mut image = Image::new(WIDTH, HEIGHT).expect("a small image");
     let plan = Plan { threads: NonZeroUsize::MIN, tile: NonZeroU32::new(16).expect("not 0") };
     let mut renderer = rayweave_registry::recommended().prepare(plan).expect("one thread");
-    renderer.render(&*work, &mut picture).expect("renders");
-    picture
+    renderer.render(&*work, &mut image).expect("renders");
+    image
 }
 
 /// PSNR of the tracer in `f32` and in `f64`.

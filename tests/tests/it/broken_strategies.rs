@@ -74,7 +74,7 @@ fn right(plan: Plan, work: &dyn Work, image: &mut Image) -> Result<(), StrategyE
 /// For strategies that do not have the threads, and would make everybody wait.
 const IMPATIENCE: Duration = Duration::from_millis(200);
 
-/// What a check of two threads and tiles of 8 says about a picture of this size.
+/// What a check of two threads and tiles of 8 says about an image of this size.
 fn findings_at(
     strategy: &dyn Strategy,
     width: u32,
@@ -90,7 +90,7 @@ fn findings_at(
         tiles: &[tile(8)],
         timeout,
     };
-    check.run(|_| {}).expect("a reference picture").findings
+    check.run(|_| {}).expect("a reference image").findings
 }
 
 /// The same of 20 x 12 pixels, which are three by two tiles, the last column and row smaller.
@@ -244,7 +244,7 @@ fn computes_with_one_thread_more() {
     let found = findings(|plan, work, image| {
         share_out(plan.threads.get() + 1, work, image.tiles(plan.tile))
     });
-    // Once while its threads are counted, once for the picture.
+    // Once while its threads are counted, once for the image.
     assert_eq!(faults(&found), [&Fault::Threads { expected: 2, found: 3 }; 2]);
 }
 
@@ -277,19 +277,19 @@ fn computes_with_one_thread_whenever_tiles_are_larger_than_a_pixel() {
 
 #[test]
 fn computes_with_six_threads_whenever_tiles_are_larger_than_a_pixel() {
-    let crowd = |plan: Plan, work: &dyn Work, image: &mut Image| {
+    let six = |plan: Plan, work: &dyn Work, image: &mut Image| {
         let threads = if plan.tile.get() > 1 { 6 } else { plan.threads.get() };
         share_out(threads, work, image.tiles(plan.tile))
     };
-    // There are four tiles to meet over, so no more than four threads meet; the picture has six.
-    let found = findings(crowd);
+    // There are four tiles to meet over, so no more than four threads meet; the image has six.
+    let found = findings(six);
     let expected = [4, 6].map(|found| Fault::Threads { expected: 2, found });
     assert_eq!(faults(&found), expected.iter().collect::<Vec<_>>());
 }
 
-/// Right whenever its threads are counted: only the picture's own threads give it away.
+/// Right whenever its threads are counted: only the image's own threads give it away.
 #[test]
-fn computes_with_one_thread_more_for_one_size_of_picture() {
+fn computes_with_one_thread_more_for_one_size_of_image() {
     let found = findings(|plan, work, image| {
         let threads = plan.threads.get() + usize::from(image.width() == 20);
         share_out(threads, work, image.tiles(plan.tile))
@@ -311,7 +311,7 @@ fn is_not_waited_for_again_with_other_tiles() {
         tiles: &[tile(1), tile(8)],
         timeout: IMPATIENCE,
     };
-    let found = check.run(|_| {}).expect("a reference picture").findings;
+    let found = check.run(|_| {}).expect("a reference image").findings;
     let expected = [2, 3].map(|expected| Fault::Threads { expected, found: 1 });
     assert_eq!(faults(&found), expected.iter().collect::<Vec<_>>());
 }
@@ -363,7 +363,7 @@ fn returns_an_error() {
         image.tiles(tile(2)).iter_mut().try_for_each(|tile| render_tile(NAME, &panics, tile))
     });
     let found = findings_at(&failing, 20, 12, IMPATIENCE);
-    // Once while its threads are counted, once for the picture.
+    // Once while its threads are counted, once for the image.
     let message = "broken: the work panicked in the tile 2x2 at (2, 0): injected".to_owned();
     assert_eq!(faults(&found), [&Fault::Failed(message.clone()), &Fault::Failed(message)]);
 }
@@ -376,10 +376,10 @@ fn lets_a_panic_through() {
 }
 
 #[test]
-fn replaces_the_picture_by_a_smaller_one() {
+fn replaces_the_image_by_a_smaller_one() {
     let found = findings(|plan, work, image| {
         right(plan, work, image)?;
-        *image = Image::new(3, 2).expect("a picture");
+        *image = Image::new(3, 2).expect("an image");
         Ok(())
     });
     let message = "the picture was replaced by one of 3x2".to_owned();
@@ -395,7 +395,7 @@ impl Strategy for Remembers {
     }
 
     fn summary(&self) -> &'static str {
-        "computes a picture once"
+        "computes an image once"
     }
 
     fn threads(&self) -> Threads {
@@ -411,23 +411,23 @@ impl Strategy for Remembers {
     }
 
     fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
-        Ok(Box::new(Memory { plan, picture: None }))
+        Ok(Box::new(Memory { plan, first: None }))
     }
 }
 
 struct Memory {
     plan: Plan,
-    picture: Option<Image>,
+    first: Option<Image>,
 }
 
 impl Renderer for Memory {
     fn render(&mut self, work: &dyn Work, image: &mut Image) -> Result<(), StrategyError> {
-        if let Some(picture) = &self.picture {
-            image.clone_from(picture);
+        if let Some(first) = &self.first {
+            image.clone_from(first);
             return Ok(());
         }
         right(self.plan, work, image)?;
-        self.picture = Some(image.clone());
+        self.first = Some(image.clone());
         Ok(())
     }
 }

@@ -1,4 +1,4 @@
-//! The BVH leaves out what a ray does not meet, and nothing else: with it a picture has the
+//! The BVH leaves out what a ray does not meet, and nothing else: with it an image has the
 //! bits that it has when each ray tries each primitive.
 
 use glam::DVec3;
@@ -6,13 +6,13 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use rayweave_core::scene::{Cylinder, Sphere, Triangle};
 use rayweave_core::{Acceleration, Execution, Lanes, Precision, Scene};
+use rayweave_tests::image::{difference, in_tiles, plain};
 use rayweave_tests::many_primitives::{Arrangement, Shape, many_primitives, meshes};
-use rayweave_tests::picture::{difference, in_tiles, plain};
 use rayweave_tests::transform::{enlarged, moved};
 
 const PRECISIONS: [Precision; 2] = [Precision::F32, Precision::F64];
 
-/// What is different with acceleration, in any packet, from a picture that tries everything.
+/// What is different with acceleration, in any packet, from an image that tries everything.
 fn acceleration_differs(scene: &Scene, size: (u32, u32), precision: Precision) -> Option<String> {
     let scene = &scene.with_arithmetic(precision);
     let right = in_tiles(scene, size, plain(), 1000);

@@ -1,4 +1,4 @@
-//! Culling by planes, cones and bounding spheres changes no picture: in scenes of
+//! Culling by planes, cones and bounding spheres changes no image: in scenes of
 //! a few primitives acceleration has the bits of trying everything, also where eyes and lights stand
 //! in planes, on surfaces and inside of things, and where rays run along them.
 
@@ -11,24 +11,24 @@ use rayweave_core::scene::{
     Camera, Cylinder, Light, Material, Plane, RenderSettings, Sphere, Triangle,
 };
 use rayweave_core::{Acceleration, Execution, Lanes, Precision, Scene};
-use rayweave_tests::picture::{difference, in_tiles, plain};
+use rayweave_tests::image::{difference, in_tiles, plain};
 use rayweave_tests::transform::{enlarged, moved};
 
 const PRECISIONS: [Precision; 2] = [Precision::F32, Precision::F64];
 const SIZE: (u32, u32) = (12, 9);
 
-fn picture(scene: &Scene, execution: Execution) -> Image {
+fn image(scene: &Scene, execution: Execution) -> Image {
     in_tiles(scene, SIZE, execution, 1000)
 }
 
-/// What is different with acceleration, in any packet, from a picture that tries everything.
+/// What is different with acceleration, in any packet, from an image that tries everything.
 fn acceleration_differs(scene: &Scene) -> Option<String> {
     PRECISIONS.into_iter().find_map(|precision| {
         let scene = &scene.with_arithmetic(precision);
-        let right = picture(scene, plain());
+        let right = image(scene, plain());
         Lanes::ALL.into_iter().find_map(|lanes| {
             let execution = Execution { lanes, acceleration: Acceleration::Auto, ..plain() };
-            let difference = difference(&picture(scene, execution), &right)?;
+            let difference = difference(&image(scene, execution), &right)?;
             Some(format!("{precision}, {lanes:?}: {difference}"))
         })
     })
@@ -138,7 +138,7 @@ fn eye_and_light_in_a_plane() {
 }
 
 /// Catches a light that is left out though it lights something, or one behind a plane that lights
-/// what is before it: with such a light a picture is what it is without.
+/// what is before it: with such a light an image is what it is without.
 #[test]
 fn a_light_behind_a_plane_lights_nothing() {
     for (point, normal) in [
@@ -164,7 +164,7 @@ fn a_light_behind_a_plane_lights_nothing() {
             for (with, without) in placed(&with).iter().zip(placed(&without)) {
                 for precision in PRECISIONS {
                     let [found, right] = [with, &without].map(|scene| {
-                        picture(&scene.with_arithmetic(precision), Execution::default())
+                        image(&scene.with_arithmetic(precision), Execution::default())
                     });
                     assert_eq!(
                         difference(&found, &right),
@@ -316,7 +316,7 @@ fn rays_along_things() {
         for thin in [1.5, 1e-3, 1e-20] {
             let mut scene = scene();
             scene.camera = camera(from, to);
-            // All rays of a picture this narrow are parallel.
+            // All rays of an image this narrow are parallel.
             scene.camera.screen_width = thin;
             scene.planes.push(plane(v(0.0, 0.0, 1.0), DVec3::Z));
             // Upright and lying, as the axes are.

@@ -3,8 +3,8 @@
 use glam::DVec3;
 use rayweave_core::{Caster, Precision, Scene};
 use rayweave_tests::errata::{LATTICE, LatticeCase, RAYS, shadings};
+use rayweave_tests::image;
 use rayweave_tests::model::{Primitive, render, samples};
-use rayweave_tests::picture;
 use std::collections::HashSet;
 
 // The model
@@ -126,7 +126,7 @@ fn the_tracer_s_rays_hit_where_they_should() {
 }
 
 /// Catches each of the report's slips about a colour, in either precision: along a single ray, and
-/// through the camera into a picture.
+/// through the camera into an image.
 #[test]
 fn the_tracer_s_colours_are_as_they_should() {
     for (case, precision) in shadings().iter().flat_map(|case| PRECISIONS.map(|p| (case, p))) {
@@ -141,9 +141,9 @@ fn the_tracer_s_colours_are_as_they_should() {
             DVec3::from_array(seen).distance(expected) < tolerance(precision),
             "{what}: {seen:?}"
         );
-        // Pictures are kept in `f32`.
-        let picture = picture::of_scene(&case.scene, 1, 1, precision);
-        let pixel = DVec3::from_array(picture.pixels()[0].map(f64::from));
+        // Images are kept in `f32`.
+        let image = image::of_scene(&case.scene, 1, 1, precision);
+        let pixel = DVec3::from_array(image.pixels()[0].map(f64::from));
         assert!(pixel.distance(expected) < tolerance(Precision::F32), "{what}: {pixel}");
     }
 }

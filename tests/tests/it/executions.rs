@@ -1,4 +1,4 @@
-//! How a picture is computed changes no bit of it: rays one by one or in packets, samples of each
+//! How an image is computed changes no bit of it: rays one by one or in packets, samples of each
 //! pixel's own or shared, everything tried or only what may be met, in tiles of whatever size.
 
 use proptest::prelude::*;
@@ -6,7 +6,7 @@ use proptest::test_runner::RngSeed;
 use rayweave_accuracy::metrics::ImageDifference;
 use rayweave_core::scene::RenderSettings;
 use rayweave_core::{Arithmetic, Execution, Formulas, Lanes, Precision, Sampling, Scene};
-use rayweave_tests::picture::{difference, executions, in_tiles, plain};
+use rayweave_tests::image::{difference, executions, in_tiles, plain};
 use rayweave_tests::{random_scene::random_scene, scenes};
 
 const ARITHMETICS: [Arithmetic; 4] = [
@@ -16,7 +16,7 @@ const ARITHMETICS: [Arithmetic; 4] = [
     Arithmetic { formulas: Formulas::Textbook, precision: Precision::F64 },
 ];
 
-/// The whole picture as one tile, tiles that packets and strips do not fit, and single pixels.
+/// The whole image as one tile, tiles that packets and strips do not fit, and single pixels.
 const TILES: [u32; 3] = [1000, 7, 1];
 
 /// Every execution in every cut gives the bits of the plain one, pixel by pixel.
@@ -49,7 +49,7 @@ fn the_repository_s_scenes() {
 
 /// Catches the same at the size of a strategy's tile and more: many strips, many batches.
 #[test]
-fn a_larger_picture() {
+fn a_larger_image() {
     let mut scene = scenes::named("report");
     scene.render.antialiasing = 1;
     executions_agree(&scene, (97, 75), ARITHMETICS[0], "report");
@@ -100,14 +100,14 @@ fn adaptive_samples_are_near_the_lattice() {
     // What is the same everywhere is interpolated without an error.
     let empty =
         Scene { planes: vec![], spheres: vec![], triangles: vec![], cylinders: vec![], ..scene };
-    let picture = in_tiles(&empty, (20, 20), execution, 7);
+    let image = in_tiles(&empty, (20, 20), execution, 7);
     let lattice = Scene { render: RenderSettings { adaptive: false, ..empty.render }, ..empty };
-    assert!(picture == in_tiles(&lattice, (20, 20), execution, 7));
+    assert!(image == in_tiles(&lattice, (20, 20), execution, 7));
 }
 
-/// Catches the same in pictures that are smaller than a packet, a block, or a row of one.
+/// Catches the same in images that are smaller than a packet, a block, or a row of one.
 #[test]
-fn small_and_narrow_pictures() {
+fn small_and_narrow_images() {
     for (antialiasing, adaptive) in
         [(0, false), (1, false), (2, false), (3, false), (1, true), (2, true), (3, true)]
     {

@@ -1,13 +1,13 @@
-//! The digests of pictures, as they are to stay on every machine and in every build.
+//! The digests of images, as they are to stay on every machine and in every build.
 //!
-//! They may change only when a picture's meaning changes: the model, a formula, an order of
-//! operations. A faster way to the same picture, another strategy, compiler or machine is no such
+//! They may change only when an image's meaning changes: the model, a formula, an order of
+//! operations. A faster way to the same image, another strategy, compiler or machine is no such
 //! change. To print new ones, run `cargo test -p rayweave-tests golden`: the failure shows
 //! the whole table as it has to stand here.
 
 use rayweave_contract::Image;
 use rayweave_core::{Arithmetic, Execution, Formulas, Precision, Sampling, Scene, tracer};
-use rayweave_tests::{picture, random_scene::random_scene, scenes};
+use rayweave_tests::{image, random_scene::random_scene, scenes};
 
 const WIDTH: u32 = 100;
 const HEIGHT: u32 = 75;
@@ -46,7 +46,7 @@ fn scene(name: &str) -> Scene {
     }
 }
 
-/// Of the picture's digest, 16 hexadecimal ones.
+/// Of the image's digest, 16 hexadecimal ones.
 fn first_digits(image: &Image) -> u64 {
     u64::from_str_radix(&image.digest().short(), 16).expect("16 hexadecimal digits")
 }
@@ -56,7 +56,7 @@ fn digests(scene: &Scene) -> [[u64; 2]; 2] {
         [0, 2].map(|antialiasing| {
             let mut scene = scene.clone();
             scene.render.antialiasing = antialiasing;
-            first_digits(&picture::of_scene(&scene, WIDTH, HEIGHT, precision))
+            first_digits(&image::of_scene(&scene, WIDTH, HEIGHT, precision))
         })
     })
 }
@@ -64,7 +64,7 @@ fn digests(scene: &Scene) -> [[u64; 2]; 2] {
 /// Catches any change of a bit: a formula rearranged, a sum in another order, a multiply-add, a
 /// `libm` of the system's, an optimisation that rounds differently.
 #[test]
-fn pictures_stay_what_they_are() {
+fn images_stay_what_they_are() {
     let found = GOLDEN.map(|(name, _)| (name, digests(&scene(name))));
     let table: String = found
         .iter()
@@ -72,12 +72,12 @@ fn pictures_stay_what_they_are() {
             format!("    ({name:?}, [[{a:#018x}, {b:#018x}], [{c:#018x}, {d:#018x}]]),\n")
         })
         .collect();
-    assert!(found == GOLDEN, "the pictures are now\n{table}");
+    assert!(found == GOLDEN, "the images are now\n{table}");
 }
 
 /// Catches the same in the formulas that are there for comparison.
 #[test]
-fn textbook_pictures_stay_what_they_are() {
+fn textbook_images_stay_what_they_are() {
     let found = TEXTBOOK.map(|(name, _)| {
         let mut scene = scene(name);
         scene.render.antialiasing = 0;
@@ -86,40 +86,40 @@ fn textbook_pictures_stay_what_they_are() {
             let work =
                 tracer(&scene.with_arithmetic(arithmetic), WIDTH, HEIGHT, Execution::default())
                     .expect("a sound scene");
-            first_digits(&picture::pixel_by_pixel(&*work, WIDTH, HEIGHT))
+            first_digits(&image::pixel_by_pixel(&*work, WIDTH, HEIGHT))
         });
         (name, digests)
     });
-    assert!(found == TEXTBOOK, "the pictures are now {found:#018x?}");
+    assert!(found == TEXTBOOK, "the images are now {found:#018x?}");
 }
 
 /// Catches the same in the other sampling: a quantile from the system's library, another generator.
 #[test]
-fn importance_pictures_stay_what_they_are() {
+fn importance_images_stay_what_they_are() {
     let mut scene = scene("report");
     scene.render.antialiasing = 2;
     scene.render.sampling = Sampling::Importance;
     let found = [Precision::F32, Precision::F64]
-        .map(|precision| first_digits(&picture::of_scene(&scene, WIDTH, HEIGHT, precision)));
-    assert!(found == IMPORTANCE, "the pictures are now {found:#018x?}");
+        .map(|precision| first_digits(&image::of_scene(&scene, WIDTH, HEIGHT, precision)));
+    assert!(found == IMPORTANCE, "the images are now {found:#018x?}");
 }
 
 /// Catches points that are interpolated by another rule, or elsewhere.
 #[test]
-fn adaptive_pictures_stay_what_they_are() {
+fn adaptive_images_stay_what_they_are() {
     let found = ["room", "report"].map(|name| {
         let mut scene = scene(name);
         (scene.render.antialiasing, scene.render.adaptive) = (4, true);
         [Precision::F32, Precision::F64]
-            .map(|precision| first_digits(&picture::of_scene(&scene, WIDTH, HEIGHT, precision)))
+            .map(|precision| first_digits(&image::of_scene(&scene, WIDTH, HEIGHT, precision)))
     });
-    assert!(found == ADAPTIVE, "the pictures are now {found:#018x?}");
+    assert!(found == ADAPTIVE, "the images are now {found:#018x?}");
 }
 
-/// Catches a table that cannot fail: a digest that is the same for two pictures, because the scene
+/// Catches a table that cannot fail: a digest that is the same for two images, because the scene
 /// was not used, or the precision, or the antialiasing.
 #[test]
-fn no_two_pictures_are_the_same() {
+fn no_two_images_are_the_same() {
     let mut all: Vec<_> = GOLDEN.iter().flat_map(|(_, digests)| digests.as_flattened()).collect();
     all.sort_unstable();
     assert!(all.windows(2).all(|pair| pair[0] != pair[1]));

@@ -5,7 +5,7 @@ use std::num::{NonZeroU32, NonZeroUsize};
 use std::panic::resume_unwind;
 use std::time::Duration;
 
-/// A picture in which no two pixels are alike.
+/// An image in which no two pixels are alike.
 pub(crate) struct Gradient;
 
 impl Gradient {

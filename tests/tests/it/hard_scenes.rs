@@ -6,9 +6,9 @@ use rayweave_contract::Image;
 use rayweave_core::precision::PrecisionEstimate;
 use rayweave_core::{Precision, Scene};
 use rayweave_tests::transform::{enlarged, moved};
-use rayweave_tests::{metrics, model, picture, scenes};
+use rayweave_tests::{image, metrics, model, scenes};
 
-/// What must hold for the picture of a scene in `scenes/hard`.
+/// What must hold for the image of a scene in `scenes/hard`.
 struct Goal {
     /// The file, without the ending.
     name: &'static str,
@@ -41,7 +41,7 @@ const GOALS: [Goal; 11] = [
 /// of 8 bits.
 const ALIKE: f64 = 60.0;
 
-/// A picture in the chosen precision, in `f64` and of the model.
+/// An image in the chosen precision, in `f64` and of the model.
 struct Drawn {
     width: u32,
     precision: Precision,
@@ -56,15 +56,15 @@ impl Drawn {
         scene.render.antialiasing = antialiasing;
         let height = width * 3 / 4;
         let precision = PrecisionEstimate::of(&scene).precision();
-        let chosen = picture::of_scene(&scene, width, height, precision);
+        let chosen = image::of_scene(&scene, width, height, precision);
         let wide = match precision {
-            Precision::F32 => picture::of_scene(&scene, width, height, Precision::F64),
+            Precision::F32 => image::of_scene(&scene, width, height, Precision::F64),
             Precision::F64 => chosen.clone(),
         };
         Self { width, precision, chosen, wide, truth: model::render(&scene, width, height) }
     }
 
-    /// PSNR of the chosen picture against that in `f64`, and against the model.
+    /// PSNR of the chosen image against that in `f64`, and against the model.
     fn agreement(&self) -> [f64; 2] {
         let wide: Vec<_> = self.wide.pixels().iter().map(|color| color.map(f64::from)).collect();
         [&wide, &self.truth].map(|truth| metrics::psnr(truth, &self.chosen))
@@ -109,7 +109,7 @@ fn assert_closed(what: &str, scene: &Scene) {
     scene.render.antialiasing = 0;
     for precision in [PrecisionEstimate::of(&scene).precision(), Precision::F64] {
         // An odd number of pixels: some lie on the axes.
-        let image = picture::of_scene(&scene, 125, 93, precision);
+        let image = image::of_scene(&scene, 125, 93, precision);
         let leaks = image.pixels().iter().filter(|color| color[1] != 0.0).count();
         assert_eq!(leaks, 0, "{what}, in {precision}: pixels that are partly green");
     }
@@ -145,7 +145,7 @@ fn hard_scenes_have_no_wrong_samples() {
         if precision == Precision::F64 {
             let mut scene = scene;
             scene.render.antialiasing = 0;
-            let narrow = picture::of_scene(&scene, 200, 150, Precision::F32);
+            let narrow = image::of_scene(&scene, 200, 150, Precision::F32);
             let narrow = metrics::psnr(&drawn.truth, &narrow);
             assert!(narrow < 66.0, "{name}: f32 would do, with {narrow:.1} dB");
         }

@@ -1,12 +1,12 @@
-//! The same bits from every strategy, number of threads, size of tile and size of picture; and from
-//! every way of cutting a picture into tiles, which is what lets strategies differ at all.
+//! The same bits from every strategy, number of threads, size of tile and size of image; and from
+//! every way of cutting an image into tiles, which is what lets strategies differ at all.
 //!
 //! `broken_strategies` shows that `check` catches what is wrong; this is the proof for the real
-//! tracer, against pictures that no strategy had a hand in.
+//! tracer, against images that no strategy had a hand in.
 
 use rayweave_contract::{Image, Plan, Rect, Rgb, Tile, Work};
 use rayweave_core::{Execution, Precision, Scene, tracer};
-use rayweave_tests::picture::pixel_by_pixel;
+use rayweave_tests::image::pixel_by_pixel;
 use rayweave_tests::{random_scene::random_scene, scenes};
 use std::num::{NonZeroU32, NonZeroUsize};
 
@@ -23,11 +23,11 @@ fn scene(name: &str) -> Scene {
     scene
 }
 
-/// Catches a strategy that leaves out, swaps or tears pixels, or keeps something of the picture
+/// Catches a strategy that leaves out, swaps or tears pixels, or keeps something of the image
 /// before: one renderer draws all sizes, one after the other.
 fn strategies_agree(name: &str, precision: Precision) {
     let scene = scene(name);
-    let pictures = SIZES.map(|(width, height)| {
+    let images = SIZES.map(|(width, height)| {
         let work = tracer(&scene.with_arithmetic(precision), width, height, Execution::default())
             .expect("a sound scene");
         let right = pixel_by_pixel(&*work, width, height);
@@ -43,9 +43,9 @@ fn strategies_agree(name: &str, precision: Precision) {
                 tile: NonZeroU32::new(tile).expect("not 0"),
             };
             let mut renderer = strategy.prepare(plan).expect(&context);
-            for (work, right) in &pictures {
+            for (work, right) in &images {
                 let mut found =
-                    Image::filled(right.width(), right.height(), POISON).expect("a picture");
+                    Image::filled(right.width(), right.height(), POISON).expect("an image");
                 renderer.render(&**work, &mut found).expect(&context);
                 assert_same(&found, right, &context);
             }
@@ -97,7 +97,7 @@ fn a_pixel_is_the_same_in_every_tile() {
 
 fn tilings_agree(work: &dyn Work, width: u32, height: u32, context: &str) {
     let right = pixel_by_pixel(work, width, height);
-    let poisoned = || Image::filled(width, height, POISON).expect("a picture");
+    let poisoned = || Image::filled(width, height, POISON).expect("an image");
 
     let mut by_row = poisoned();
     for (y, row) in by_row.pixels_mut().chunks_mut(width as usize).enumerate().rev() {
@@ -113,7 +113,7 @@ fn tilings_agree(work: &dyn Work, width: u32, height: u32, context: &str) {
     }
     assert_same(&by_half_row, &right, &format!("{context}, by half a row"));
 
-    // From one pixel to the whole picture.
+    // From one pixel to the whole image.
     for side in [1, 2, 3, 5, 8, 16, 1000] {
         let mut tiled = poisoned();
         let tiles = tiled.tiles(NonZeroU32::new(side).expect("not 0"));
@@ -135,7 +135,7 @@ fn a_pixel_is_the_same_every_time() {
 }
 
 /// Catches tiles that overlap, leave something out or are named after another place: then two
-/// strategies could agree on a wrong picture.
+/// strategies could agree on a wrong image.
 #[test]
 fn tiles_are_where_they_say() {
     struct Place;
@@ -155,11 +155,11 @@ fn tiles_are_where_they_say() {
     }
     for (width, height) in SIZES {
         for tile in TILES {
-            let mut picture = Image::new(width, height).expect("a picture");
-            let tiles = picture.tiles(NonZeroU32::new(tile).expect("not 0"));
+            let mut image = Image::new(width, height).expect("an image");
+            let tiles = image.tiles(NonZeroU32::new(tile).expect("not 0"));
             tiles.into_iter().for_each(|mut tile| Place.render(&mut tile));
-            for (index, color) in picture.pixels().iter().enumerate() {
-                let (x, y) = picture.position(index);
+            for (index, color) in image.pixels().iter().enumerate() {
+                let (x, y) = image.position(index);
                 assert_eq!(*color, [x as f32, y as f32, 1.0], "{width}x{height}, tiles of {tile}");
             }
         }

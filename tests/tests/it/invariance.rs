@@ -1,9 +1,9 @@
-//! What a picture does not depend on: the unit of length, and which hand is the right one. Neither
-//! change rounds anything, so that not a bit of the picture may change.
+//! What an image does not depend on: the unit of length, and which hand is the right one. Neither
+//! change rounds anything, so that not a bit of the image may change.
 
 use rayweave_contract::Image;
 use rayweave_core::{Precision, Scene};
-use rayweave_tests::picture::of_scene;
+use rayweave_tests::image::of_scene;
 use rayweave_tests::random_scene::random_scene;
 use rayweave_tests::scenes;
 use rayweave_tests::transform::{enlarged, mirrored};
@@ -34,9 +34,9 @@ fn the_unit_of_length_does_not_matter() {
 }
 
 /// Catches an axis mixed up with another and a sign that is wrong, from the camera to the colour:
-/// the mirrored scene's picture is the mirror image.
+/// the mirrored scene's image is the mirror image.
 #[test]
-fn a_mirrored_scene_is_a_mirrored_picture() {
+fn a_mirrored_scene_is_a_mirrored_image() {
     for (name, mut scene, precision) in all() {
         // The filter adds its samples from the left, which rounds differently from the right.
         scene.render.antialiasing = 0;
@@ -53,9 +53,9 @@ fn a_mirrored_scene_is_a_mirrored_picture() {
 }
 
 /// The mirror image, left for right.
-fn flipped(picture: &Image) -> Image {
-    let mut flipped = picture.clone();
-    let width = picture.width() as usize;
+fn flipped(image: &Image) -> Image {
+    let mut flipped = image.clone();
+    let width = image.width() as usize;
     flipped.pixels_mut().chunks_mut(width).for_each(<[_]>::reverse);
     flipped
 }

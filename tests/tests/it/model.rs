@@ -77,7 +77,7 @@ fn assert_close(found: DVec3, expected: impl Into<DVec3>) {
 // Camera
 
 #[test]
-fn the_middle_of_the_picture_is_straight_ahead() {
+fn the_middle_of_the_image_is_straight_ahead() {
     let camera = Camera {
         position: DVec3::new(1.0, 2.0, 3.0),
         look_at: DVec3::new(4.0, 6.0, 3.0),
@@ -107,7 +107,7 @@ fn the_screen_has_its_corners_where_they_belong() {
 
 #[test]
 fn up_is_neither_unit_nor_at_a_right_angle() {
-    // Straight down: the top of the picture is to -z, its right to +x.
+    // Straight down: the top of the image is to -z, its right to +x.
     let down = Camera { look_at: -DVec3::Y, up: DVec3::new(0.0, 5.0, -0.2), ..empty().camera };
     let expected = DVec3::new(2.0, -2.0, -2.0).normalize();
     assert_close(primary_ray(&down, 8.0, 0.0, 8, 8).direction, expected);
@@ -116,8 +116,8 @@ fn up_is_neither_unit_nor_at_a_right_angle() {
 #[test]
 fn rows_come_from_the_top() {
     let scene = Scene { planes: vec![Plane { point: -DVec3::Y, ..floor(RED) }], ..empty() };
-    let picture = render(&scene, 2, 2);
-    assert_eq!(picture, [[0.5; 3], [0.5; 3], [1.0, 0.0, 0.0], [1.0, 0.0, 0.0]]);
+    let image = render(&scene, 2, 2);
+    assert_eq!(image, [[0.5; 3], [0.5; 3], [1.0, 0.0, 0.0], [1.0, 0.0, 0.0]]);
 }
 
 #[test]
@@ -495,7 +495,7 @@ fn an_edge_through_a_pixel() {
 }
 
 #[test]
-fn samples_outside_the_picture_are_traced() {
+fn samples_outside_the_image_are_traced() {
     // The pixel sees only background; half of what is beyond its left edge is red.
     let mut scene = empty();
     scene.render = RenderSettings { background: DVec3::ZERO, antialiasing: 1, ..scene.render };
@@ -555,10 +555,10 @@ fn off_surface(primitive: &Primitive, point: DVec3) -> f64 {
 }
 
 #[test]
-fn random_pictures_are_finite_and_not_negative() {
+fn random_images_are_finite_and_not_negative() {
     for seed in 0..100 {
-        let picture = render(&random_scene(seed), 6, 5);
-        assert_eq!(picture.len(), 30);
-        assert!(picture.as_flattened().iter().all(|c| c.is_finite() && *c >= 0.0), "seed {seed}");
+        let image = render(&random_scene(seed), 6, 5);
+        assert_eq!(image.len(), 30);
+        assert!(image.as_flattened().iter().all(|c| c.is_finite() && *c >= 0.0), "seed {seed}");
     }
 }

@@ -5,7 +5,7 @@ use rayweave_core::precision::{F32_DISPLACEMENT, F32_MIRRORS, PrecisionEstimate}
 use rayweave_core::scene::{Cylinder, Material, Plane, Sphere, Triangle};
 use rayweave_core::{Lanes, Precision, Scene};
 use rayweave_tests::transform::{enlarged, moved};
-use rayweave_tests::{metrics, model, picture, scenes};
+use rayweave_tests::{image, metrics, model, scenes};
 
 fn chosen(scene: &Scene) -> Precision {
     PrecisionEstimate::of(scene).precision()
@@ -33,7 +33,7 @@ fn on_a_globe(radius: f64) -> Scene {
     scene
 }
 
-/// Seen through a lens that shows a picture as wide as it is far away.
+/// Seen through a lens that shows an image as wide as it is far away.
 fn through_a_lens(focal_length: f64, mut scene: Scene) -> Scene {
     scene.camera.focal_length = focal_length;
     scene.camera.screen_width = 1.0;
@@ -275,9 +275,8 @@ fn agreement(scene: &Scene) -> [f64; 2] {
     let mut scene = scene.clone();
     scene.render.antialiasing = 1;
     let truth = model::render(&scene, WIDTH, HEIGHT);
-    [Precision::F32, Precision::F64].map(|precision| {
-        metrics::psnr(&truth, &picture::of_scene(&scene, WIDTH, HEIGHT, precision))
-    })
+    [Precision::F32, Precision::F64]
+        .map(|precision| metrics::psnr(&truth, &image::of_scene(&scene, WIDTH, HEIGHT, precision)))
 }
 
 /// What the chosen precision has to reach. Above 60 dB a single sample decides, here one that
@@ -350,7 +349,7 @@ fn a_floor_alone_may_be_minute() {
     }
 }
 
-/// Catches a sun whose squared distance overflows in `f32`: the picture goes dark.
+/// Catches a sun whose squared distance overflows in `f32`: the image goes dark.
 #[test]
 fn a_light_may_be_very_far() {
     for distance in [1e6, 1e18, 1e20, 1e30, 1e100] {
@@ -360,7 +359,7 @@ fn a_light_may_be_very_far() {
     }
 }
 
-/// Catches a screen whose size over- or underflows in `f32`: the picture is one colour, although
+/// Catches a screen whose size over- or underflows in `f32`: the image is one colour, although
 /// only the proportions matter.
 #[test]
 fn a_screen_may_be_very_small_or_large() {

@@ -36,7 +36,7 @@ fn the_real_strategies_agree() {
             told += 1;
             assert!(told <= progress.total);
         })
-        .expect("a reference picture");
+        .expect("a reference image");
     assert_eq!(verdict.findings, []);
     let alone = available().iter().filter(|s| s.threads() == Threads::None).count();
     let settings = ((available().len() - alone) * THREADS.len() + alone) * 4;
@@ -64,7 +64,7 @@ fn the_real_strategies_survive_work_that_panics() {
 fn survives(strategy: &dyn Strategy, threads: NonZeroUsize) {
     let context = format!("{}, {threads} threads", strategy.name());
     let mut renderer = strategy.prepare(Plan { threads, tile: tile(8) }).expect(&context);
-    let mut image = Image::new(97, 61).expect("a picture");
+    let mut image = Image::new(97, 61).expect("an image");
     for (x, y) in [(0, 0), (50, 30), (96, 60)] {
         let error =
             renderer.render(&Panics { work: Gradient, x, y }, &mut image).expect_err(&context);
@@ -79,7 +79,7 @@ fn survives(strategy: &dyn Strategy, threads: NonZeroUsize) {
         let right = (0..61).flat_map(|y| (0..97).map(move |x| Gradient::color(x, y)));
         assert!(
             image.pixels().iter().copied().eq(right),
-            "{context}: a wrong picture after the panic"
+            "{context}: a wrong image after the panic"
         );
     }
 }
@@ -92,7 +92,7 @@ fn all_at_once_panics_end_too() {
             resume_unwind(Box::new(String::from("always")));
         }
     }
-    let mut image = Image::new(97, 61).expect("a picture");
+    let mut image = Image::new(97, 61).expect("an image");
     for strategy in available() {
         let plan = Plan { threads: threads(8), tile: tile(8) };
         let mut renderer = strategy.prepare(plan).expect("a renderer");

@@ -6,7 +6,7 @@ use rayweave_core::scene::{Cylinder, Plane, Sphere, Triangle};
 use rayweave_core::{Arithmetic, Caster, Execution, Formulas, Precision, Scene, tracer};
 use rayweave_measure::random::SplitMix64;
 use rayweave_tests::scenes::empty;
-use rayweave_tests::{metrics, model, picture, random_scene::random_scene};
+use rayweave_tests::{image, metrics, model, random_scene::random_scene};
 
 const TEXTBOOK: Arithmetic = Arithmetic { formulas: Formulas::Textbook, precision: Precision::F64 };
 
@@ -67,7 +67,7 @@ fn random_scenes_agree() {
         let work = tracer(&scene.with_arithmetic(TEXTBOOK), 48, 36, Execution::default())
             .expect("a sound scene");
         let psnr =
-            metrics::psnr(&model::render(&scene, 48, 36), &picture::pixel_by_pixel(&*work, 48, 36));
+            metrics::psnr(&model::render(&scene, 48, 36), &image::pixel_by_pixel(&*work, 48, 36));
         assert!(psnr >= 35.0, "seed {seed}: {psnr:.1} dB");
     }
 }

@@ -1,4 +1,4 @@
-//! Speed against error: that the errors are those of the pictures, and that what is advised follows
+//! Speed against error: that the errors are those of the images, and that what is advised follows
 //! from them.
 
 use rayweave_accuracy::ImageDifference;
@@ -8,13 +8,13 @@ use rayweave_accuracy::tradeoff::{
 use rayweave_contract::{Image, Work};
 use rayweave_core::{Sampling, Scene};
 use rayweave_measure::Protocol;
-use rayweave_tests::{metrics, model, picture, scenes};
+use rayweave_tests::{image, metrics, model, scenes};
 use std::time::Duration;
 
 const SIZE: (u32, u32) = (20, 15);
 
 fn render(work: &dyn Work) -> Result<Image, String> {
-    Ok(picture::pixel_by_pixel(work, SIZE.0, SIZE.1))
+    Ok(image::pixel_by_pixel(work, SIZE.0, SIZE.1))
 }
 
 /// Of one round: nothing here is about time.
@@ -27,8 +27,8 @@ fn study(scene: &Scene) -> TradeoffStudy {
         .expect("a study")
 }
 
-fn picture_with(scene: &Scene, setting: Setting) -> Image {
-    render(&*setting.work(scene, SIZE).expect("a sound scene")).expect("a picture")
+fn image_with(scene: &Scene, setting: Setting) -> Image {
+    render(&*setting.work(scene, SIZE).expect("a sound scene")).expect("an image")
 }
 
 /// Catches errors that are another setting's, an arithmetic that is compared with other rays, a
@@ -41,15 +41,15 @@ fn each_row_is_of_its_setting() {
     assert_eq!((study.rounds, study.rows.len()), (1, 4 * (13 * 3 + 5)));
     let truth = &study.reference.image;
     for row in &study.rows {
-        let found = picture_with(&scene, row.setting);
+        let found = image_with(&scene, row.setting);
         assert_eq!(row.error, ImageDifference::between(truth, &found), "{}", row.setting);
         let exact = Setting { arithmetic: study.rows[0].setting.arithmetic, ..row.setting };
-        let arithmetic = ImageDifference::between(&picture_with(&scene, exact), &found).rmse;
+        let arithmetic = ImageDifference::between(&image_with(&scene, exact), &found).rmse;
         assert_eq!(row.arithmetic_rmse, arithmetic, "{}", row.setting);
         let deep = Setting { max_reflections: scene.render.max_reflections, ..exact };
         assert_eq!(
             row.sampling_rmse,
-            ImageDifference::between(truth, &picture_with(&scene, deep)).rmse
+            ImageDifference::between(truth, &image_with(&scene, deep)).rmse
         );
         assert_eq!(row.samples_ns.len(), 1);
     }
@@ -99,7 +99,7 @@ fn importance_is_nearer_with_as_many_rays() {
             let own = Setting::report(scene.render.max_reflections);
             let setting = Setting { sampling, antialiasing, ..own };
             let error =
-                ImageDifference::between(&reference.image, &picture_with(&scene, setting)).rmse;
+                ImageDifference::between(&reference.image, &image_with(&scene, setting)).rmse;
             (setting.rays_per_pixel(), error)
         };
         for density in [2, 3, 4] {

@@ -1,4 +1,4 @@
-//! Pictures without any strategy: whatever is true of them is true of the work alone.
+//! Images without any strategy: whatever is true of them is true of the work alone.
 
 use rayweave_contract::{Image, Rgb, Tile, Work};
 use rayweave_core::{Acceleration, Execution, Lanes, Precision, Scene, tracer};
@@ -22,11 +22,11 @@ pub fn executions() -> Vec<Execution> {
     shared.flat_map(|e| Lanes::ALL.map(|lanes| Execution { lanes, ..e })).collect()
 }
 
-/// The picture in tiles of this side, the last one first; what no tile writes stays NaN.
+/// The image in tiles of this side, the last one first; what no tile writes stays NaN.
 ///
 /// # Panics
 ///
-/// If the scene is not sound, the side is 0, or a picture of that size cannot be.
+/// If the scene is not sound, the side is 0, or an image of that size cannot be.
 #[must_use]
 pub fn in_tiles(
     scene: &Scene,
@@ -35,10 +35,10 @@ pub fn in_tiles(
     side: u32,
 ) -> Image {
     let work = tracer(scene, width, height, execution).expect("a sound scene");
-    let mut picture = Image::filled(width, height, [f32::NAN; 3]).expect("a picture of this size");
-    let tiles = picture.tiles(NonZeroU32::new(side).expect("not 0"));
+    let mut image = Image::filled(width, height, [f32::NAN; 3]).expect("an image of this size");
+    let tiles = image.tiles(NonZeroU32::new(side).expect("not 0"));
     tiles.into_iter().rev().for_each(|mut tile| work.render(&mut tile));
-    picture
+    image
 }
 
 /// Which pixels have other bits, if any: how many, and the first of them.
@@ -57,22 +57,22 @@ pub fn difference(found: &Image, right: &Image) -> Option<String> {
 ///
 /// # Panics
 ///
-/// If a picture of that size cannot be.
+/// If an image of that size cannot be.
 #[must_use]
 pub fn pixel_by_pixel(work: &dyn Work, width: u32, height: u32) -> Image {
-    let mut picture = Image::new(width, height).expect("a picture of this size");
-    for index in (0..picture.pixels().len()).rev() {
-        let (x, y) = picture.position(index);
-        work.render(&mut Tile::pixel(x, y, &mut picture.pixels_mut()[index]));
+    let mut image = Image::new(width, height).expect("an image of this size");
+    for index in (0..image.pixels().len()).rev() {
+        let (x, y) = image.position(index);
+        work.render(&mut Tile::pixel(x, y, &mut image.pixels_mut()[index]));
     }
-    picture
+    image
 }
 
-/// The picture of `scene` with the robust formulas in this precision.
+/// The image of `scene` with the robust formulas in this precision.
 ///
 /// # Panics
 ///
-/// If the scene is not sound, or a picture of that size cannot be.
+/// If the scene is not sound, or an image of that size cannot be.
 #[must_use]
 pub fn of_scene(scene: &Scene, width: u32, height: u32, precision: Precision) -> Image {
     let work = tracer(&scene.with_arithmetic(precision), width, height, Execution::default())
