@@ -10,7 +10,7 @@ const HEADER: &str = "src/loops.h";
 const PROBE: &str = "src/probe.c";
 const FLAG: &str = "-fopenmp";
 
-/// What brings OpenMP to a program that another compiler links: gcc's library, and clang's.
+/// The libraries of OpenMP for a program that another compiler links: gcc's, and clang's.
 const LIBRARIES: [&str; 2] = ["gomp", "omp"];
 
 fn main() {
@@ -21,15 +21,15 @@ fn main() {
     match compile() {
         Ok(()) => println!("cargo::rustc-cfg=openmp"),
         Err(missing) => println!(
-            "cargo::rustc-env=WITHOUT_OPENMP=built without OpenMP: {missing}; install gcc, or clang with \
-             libomp, and build again"
+            "cargo::rustc-env=WITHOUT_OPENMP=built without OpenMP: {missing}; \
+             install gcc, or clang with libomp, and build again"
         ),
     }
 }
 
 fn compile() -> Result<(), String> {
     let mut build = cc::Build::new();
-    // What this compiler cannot do is no news while building: the strategies tell who asks for
+    // A missing OpenMP is no error of the build: the strategies report it to a user who asks for
     // them.
     build.cargo_warnings(false).file(LOOPS).flag(FLAG);
     let compiler = build.try_get_compiler().map_err(|_| "there is no C compiler".to_owned())?;
@@ -59,17 +59,17 @@ fn compile() -> Result<(), String> {
     Ok(())
 }
 
-/// Whether the command runs, and succeeds; quietly.
+/// Runs a command quietly, and returns true if it succeeds.
 fn runs(command: &mut Command) -> bool {
     let command = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
     command.status().is_ok_and(|status| status.success())
 }
 
-/// Where the compiler has this library, if it says so.
+/// Returns the place where the compiler has this library, if it says so.
 fn folder_of(library: &str, compiler: &Path) -> Option<PathBuf> {
     let file = format!("{}{library}{}", env::consts::DLL_PREFIX, env::consts::DLL_SUFFIX);
     let output = Command::new(compiler).arg(format!("-print-file-name={file}")).output().ok()?;
     let path = PathBuf::from(String::from_utf8(output.stdout).ok()?.trim());
-    // A name alone is the compiler's way to say that it does not know.
+    // If the compiler does not know, it prints the name alone.
     path.parent().filter(|folder| folder.is_absolute()).map(Path::to_owned)
 }

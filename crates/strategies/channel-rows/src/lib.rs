@@ -1,14 +1,14 @@
-//! `channel-rows`: N threads compute rows and send them to the one thread that owns the picture.
+//! `channel-rows`: N threads compute rows and send them to the one thread that owns the image.
 //!
-//! * **What it decides**: that nothing is shared but the next row's number and a channel. A thread
+//! * **What it decides**: that threads share only the next row's number and a channel. A thread
 //!   takes the next row, computes it into memory of its own, and sends that; the caller's thread
 //!   copies.
 //! * **What it costs**: an allocation, a message and a copy for every row, the samples that a row
 //!   shares with its neighbours, starting the threads within every rendering, and a thread more
-//!   than N that only copies. Rows that nobody has copied yet take memory: at the worst as much as
-//!   the picture.
-//! * **When it is right**: when results must not be written in place: they are of a size that
-//!   nobody knows beforehand, or go to a file or a window that one thread owns.
+//!   than N that only copies. Rows that are not copied yet take memory: at the worst as much as
+//!   the image.
+//! * **When it is right**: when results must not be written in place, because their size is not
+//!   known beforehand, or they go to a file or a window that one thread owns.
 
 use rayweave_contract::{
     Granularity, Image, Output, Plan, Policy, Renderer, Rgb, Scheduling, Strategy, StrategyError,
@@ -22,7 +22,7 @@ use std::sync::mpsc;
 
 const NAME: &str = "channel-rows";
 
-/// Threads that send finished rows to the one that owns the picture.
+/// Threads that send finished rows to the one that owns the image.
 #[derive(Debug)]
 pub struct ChannelRows;
 

@@ -1,12 +1,12 @@
-//! `mutex-image`: the report's second way, threads by hand and one lock around the picture.
+//! `mutex-image`: the report's second way, threads by hand and one lock around the image.
 //!
 //! * **What it decides**: everything beforehand. Thread `i` of `n` gets the `i`-th of `n` equal
-//!   ranges of pixels; whoever is done early waits for the slowest.
-//! * **What it costs**: a lock and unlock for every pixel (some 5 ns alone, several times that
-//!   when two threads meet), starting the threads within every rendering, and all of the imbalance
-//!   of the picture: if one range holds the expensive corner, one thread does the work.
+//!   ranges of pixels; a thread that is done early waits for the slowest.
+//! * **What it costs**: a lock and unlock for every pixel (some 5 ns uncontended, several times
+//!   that when two threads meet), starting the threads within every rendering, and all of the
+//!   imbalance of the image: if one range has the expensive corner, one thread does the work.
 //! * **When it is right**: never for this loop, since pixels are disjoint and need no lock. It is
-//!   here because the report did it, because it is what many write first, and because the table
+//!   here because the report did it, because it is a common first attempt, and because the table
 //!   shows which of its two mistakes costs more.
 
 use parking_lot::Mutex;
@@ -19,7 +19,7 @@ use std::num::NonZeroUsize;
 
 const NAME: &str = "mutex-image";
 
-/// Hand-spawned threads, a static share of the pixels each, one lock around the picture.
+/// Hand-spawned threads, a static share of the pixels each, one lock around the image.
 #[derive(Debug)]
 pub struct MutexImage;
 
@@ -60,7 +60,7 @@ impl Renderer for StaticShares {
         let image = Mutex::new(image);
         thread_team::run(NAME, shares, |team, share| {
             for index in share {
-                // Computed into a place of the thread's own: the lock is held for the copy only.
+                // Computed into memory of the thread's own: the lock is held for the copy only.
                 let (x, y) = ((index % width) as u32, (index / width) as u32);
                 let mut color = [0.0; 3];
                 team.render_tile(work, &mut Tile::pixel(x, y, &mut color))?;

@@ -1,13 +1,13 @@
-//! `mutex-rows`: as `mutex-image`, but the lock around the picture is taken once a row.
+//! `mutex-rows`: as `mutex-image`, but the lock around the image is taken once a row.
 //!
 //! * **What it decides**: everything beforehand. Thread `i` of `n` gets the `i`-th of `n` equal
 //!   ranges of rows, computes a row into memory of its own, and copies it under the lock.
 //! * **What it costs**: a lock and a copy for every row, starting the threads within every
 //!   rendering, every sample that a row shares with its neighbours, and all of the imbalance of the
-//!   picture.
+//!   image.
 //! * **When it is right**: when results go into something that cannot be cut into disjoint parts,
-//!   such as a map or a file. Beside `mutex-image` it shows that a lock costs by how often it is
-//!   taken; what is left is the price of fixed shares.
+//!   such as a map or a file. Compared with `mutex-image` it shows that the cost of a lock follows
+//!   from how often it is taken. The remaining cost is that of fixed shares.
 
 use parking_lot::Mutex;
 use rayweave_contract::{
@@ -19,7 +19,7 @@ use std::num::NonZeroUsize;
 
 const NAME: &str = "mutex-rows";
 
-/// Hand-spawned threads, a static share of the rows each, one lock around the picture.
+/// Hand-spawned threads, a static share of the rows each, one lock around the image.
 #[derive(Debug)]
 pub struct MutexRows;
 

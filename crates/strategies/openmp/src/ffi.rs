@@ -36,7 +36,7 @@ unsafe extern "C" {
     );
 }
 
-/// Starts the threads of the calling thread's loops; how many there are then, itself among them.
+/// Starts the threads of the calling thread's loops, and returns their number with itself.
 pub fn start(threads: c_int) -> c_int {
     rayweave_openmp_start(threads)
 }
@@ -54,12 +54,12 @@ pub fn for_each(schedule: Schedule, threads: c_int, count: usize, body: &Body<'_
         Schedule::Dynamic => rayweave_openmp_dynamic,
         Schedule::Guided => rayweave_openmp_guided,
     };
-    // SAFETY: `iteration` takes the context for what it is, a pointer to `body`. That lives until
-    // the loop has returned, and being `Sync` may be called from its threads.
+    // SAFETY: `iteration` casts the context back to a pointer to `body`, which it is. `body` lives
+    // until the loop has returned, and being `Sync` may be called from its threads.
     unsafe { run(threads, count, iteration, (&raw const body).cast()) }
 }
 
-/// A panic does not leave it: one that came so far would end the process, not unwind through C.
+/// Calls the body. A panic that came so far would end the process, not unwind through C.
 extern "C" fn iteration(context: *const c_void, index: usize) {
     // SAFETY: the pointer that `for_each` gave to the loop that calls this.
     let body = unsafe { *context.cast::<&Body<'_>>() };

@@ -2,17 +2,17 @@
 //! loop, with the C compiler's OpenMP and the work in Rust.
 //!
 //! * **What it decides**: `static` everything beforehand: each thread gets one of N equal ranges of
-//!   tiles. `dynamic` nothing: whoever is free takes the next tile. `guided` begins with large
-//!   pieces, what is left over N, and ends with single tiles.
-//! * **What it costs**: a C compiler at build time, unsafe code at the border, an unmet lock a tile
-//!   (some 10 ns: that OpenMP gives each index to one thread, the compiler cannot know), and
-//!   threads that are started once. `static` has all of the imbalance of the picture, `dynamic` an
+//!   tiles. `dynamic` nothing: a free thread takes the next tile. `guided` begins with large
+//!   chunks, the remaining tiles over N, and ends with single tiles.
+//! * **What it costs**: a C compiler at build time, unsafe code at the border, an uncontended lock
+//!   a tile (some 10 ns: the compiler cannot know that OpenMP gives each index to one thread), and
+//!   threads that are started once. `static` has all of the imbalance of the image, `dynamic` an
 //!   atomic addition a tile, `guided` fewer of them.
 //! * **When it is right**: when a program in C or C++ has OpenMP already, and Rust is called from
 //!   its loops. In Rust alone `tile-queue` or `rayon-tiles` do the same without `unsafe`.
 //!
 //! The caller's thread is one of the N. `OMP_PROC_BIND`, `OMP_PLACES` and `OMP_WAIT_POLICY` work as
-//! ever; the number of threads is the one asked for, whatever `OMP_NUM_THREADS` or `OMP_DYNAMIC`
+//! ever. The number of threads is the requested one, whatever `OMP_NUM_THREADS` or `OMP_DYNAMIC`
 //! say, and an error where `OMP_THREAD_LIMIT` is lower. Built without OpenMP these strategies are
 //! unavailable, and say what was missing.
 
@@ -30,11 +30,11 @@ mod renderer;
 #[derive(Debug)]
 pub struct OpenMp(Schedule);
 
-/// With `schedule(static)`.
+/// The loop with `schedule(static)`.
 pub static STATIC: OpenMp = OpenMp(Schedule::Static);
-/// With `schedule(dynamic, 1)`.
+/// The loop with `schedule(dynamic, 1)`.
 pub static DYNAMIC: OpenMp = OpenMp(Schedule::Dynamic);
-/// With `schedule(guided, 1)`.
+/// The loop with `schedule(guided, 1)`.
 pub static GUIDED: OpenMp = OpenMp(Schedule::Guided);
 
 #[derive(Clone, Copy, Debug)]
@@ -75,7 +75,7 @@ impl Strategy for OpenMp {
     }
 
     fn unavailable(&self) -> Option<&'static str> {
-        // Why the build script found no OpenMP, if it found none.
+        // The reason why the build script found no OpenMP, if it found none.
         option_env!("WITHOUT_OPENMP")
     }
 

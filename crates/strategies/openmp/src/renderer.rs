@@ -1,4 +1,4 @@
-//! A prepared loop, where there is OpenMP.
+//! A prepared loop, where OpenMP is available.
 
 use crate::{Schedule, ffi};
 use parking_lot::Mutex;

@@ -1,16 +1,16 @@
 //! `paralight-tiles`: a loop over the tiles with `paralight`, a library for slices and nothing
 //! else.
 //!
-//! * **What it decides**: a first share for each thread, an equal range of the tiles. Whoever is
-//!   done takes half of what another has left, by one compare-and-swap of the two ends of its
+//! * **What it decides**: a first share for each thread, an equal range of the tiles. A thread that
+//!   is done takes half of what another has left, by one compare-and-swap of the two ends of its
 //!   range.
-//! * **What it costs**: a pool that is started once, cutting the picture into tiles, and an atomic
+//! * **What it costs**: a pool that is started once, cutting the image into tiles, and an atomic
 //!   operation a tile. There are no tasks and no deques, so a loop begins and ends sooner than
 //!   rayon's; in return loops do not nest.
 //! * **When it is right**: for flat loops over slices that are short or come often, where rayon's
 //!   start of a loop shows. It is young: below version 0.1.
 //!
-//! Its pool panics where a thread cannot be started, so as many are tried out before.
+//! Its pool panics where a thread cannot be started, so the strategy first starts as many to probe.
 
 use paralight::prelude::*;
 use paralight::threads::ThreadPool;

@@ -1,15 +1,15 @@
 //! `rayon-pixels`: a parallel loop over the pixels, as the report's `#pragma omp parallel for`.
 //!
 //! * **What it decides**: only that pixels are independent. rayon splits the range of pixels in
-//!   halves as long as idle threads steal them, so an expensive corner is shared out without
-//!   anyone planning for it.
+//!   halves as long as idle threads steal them, so an expensive corner is shared out without a
+//!   plan for it.
 //! * **What it costs**: a pool that is started once (some 100 us), a call of the work for every
 //!   pixel, and no sharing of anything between neighbouring pixels.
 //! * **When it is right**: first. It is one line away from the sequential loop and hard to get
 //!   wrong; leave it when a profile shows the price of such small items.
 //!
-//! The pool is its own, with exactly the threads asked for: rayon's global pool has as many as
-//! the machine has cores, whatever a caller wants to measure.
+//! The pool is its own, with exactly the requested threads: rayon's global pool has as many as the
+//! machine has cores, whatever a caller wants to measure.
 
 use rayon::ThreadPool;
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
@@ -20,7 +20,7 @@ use rayweave_contract::{
 
 const NAME: &str = "rayon-pixels";
 
-/// One parallel item a pixel, in a pool of its own.
+/// A loop of rayon over pixels, in a pool of its own.
 #[derive(Debug)]
 pub struct RayonPixels;
 

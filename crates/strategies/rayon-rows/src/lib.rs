@@ -1,14 +1,14 @@
 //! `rayon-rows`: a parallel loop over the rows, as `#pragma omp parallel for` around the outer of
 //! two loops.
 //!
-//! * **What it decides**: that a row is the smallest piece. rayon splits the range of rows in
-//!   halves as long as idle threads steal them, never below [`MIN_LEN`].
+//! * **What it decides**: that a row is the smallest unit of work. rayon splits the range of rows
+//!   in halves as long as idle threads steal them, never below [`MIN_LEN`].
 //! * **What it costs**: a pool that is started once (some 100 us), and every sample that a row
 //!   shares with the rows above and below it.
 //! * **When it is right**: where a loop over rows is already there, and a row takes microseconds or
 //!   more. It is as short as `rayon-pixels` and calls the work once a row.
 //!
-//! The pool is its own, with exactly the threads asked for: rayon's global pool has as many as the
+//! The pool is its own, with exactly the requested threads: rayon's global pool has as many as the
 //! machine has cores, whatever a caller wants to measure.
 
 use rayon::ThreadPool;
@@ -22,10 +22,10 @@ use rayweave_contract::{
 const NAME: &str = "rayon-rows";
 
 /// The rows that rayon does not split further: a row is worth stealing, and where the last ones are
-/// expensive nobody should be left with two.
+/// expensive no thread should be left with two.
 pub const MIN_LEN: usize = 1;
 
-/// One parallel item a row, in a pool of its own.
+/// A loop of rayon over rows, in a pool of its own.
 #[derive(Debug)]
 pub struct RayonRows;
 

@@ -1,15 +1,15 @@
 //! `rayon-tiles`: a parallel loop over the tiles.
 //!
-//! * **What it decides**: that a tile is the smallest piece. rayon splits the list of tiles in
-//!   halves as long as idle threads steal them, never below [`MIN_LEN`].
-//! * **What it costs**: a pool that is started once (some 100 us), cutting the picture into tiles,
-//!   and waiting at the end: a part is split while idle threads ask for it, not once it is being
-//!   computed. With all of the cost in one corner the threads that are done wait for that part
-//!   (scenes/loads/corner.toml); `with_max_len` would keep parts small, for a task a tile.
+//! * **What it decides**: that a tile is the smallest unit of work. rayon splits the list of tiles
+//!   in halves as long as idle threads steal them, never below [`MIN_LEN`].
+//! * **What it costs**: a pool that is started once (some 100 us), cutting the image into tiles,
+//!   and waiting at the end: a range is split while idle threads ask for it, not once it is being
+//!   computed. With all of the cost in one corner the threads that are done wait for that range
+//!   (scenes/loads/corner.toml); `with_max_len` would keep ranges small, for a task a tile.
 //! * **When it is right**: for moderately uneven work whose pixels share something with their
 //!   neighbours, in a program that has rayon already: one line a loop.
 //!
-//! The pool is its own, with exactly the threads asked for: rayon's global pool has as many as the
+//! The pool is its own, with exactly the requested threads: rayon's global pool has as many as the
 //! machine has cores, whatever a caller wants to measure.
 
 use rayon::ThreadPool;
@@ -22,10 +22,10 @@ use std::num::NonZeroU32;
 
 const NAME: &str = "rayon-tiles";
 
-/// The tiles that rayon does not split further: their size is the knob already.
+/// The tiles that rayon does not split further: their size is already the parameter.
 pub const MIN_LEN: usize = 1;
 
-/// One parallel item a tile, in a pool of its own.
+/// A loop of rayon over tiles, in a pool of its own.
 #[derive(Debug)]
 pub struct RayonTiles;
 

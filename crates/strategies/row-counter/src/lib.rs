@@ -1,15 +1,15 @@
-//! `row-counter`: whoever is free takes the next row, by one atomic counter.
+//! `row-counter`: a free thread takes the next row, by one atomic counter.
 //!
-//! * **What it decides**: nothing beforehand. The counter says which row is next; adding one to it
-//!   is all that taking a row takes, so the load balances itself down to a row.
-//! * **What it costs**: an atomic addition and an unmet lock a row (some 10 ns), starting the
+//! * **What it decides**: nothing beforehand. The counter says which row is next; a thread takes a
+//!   row by adding one to it, so the load balances itself down to a row.
+//! * **What it costs**: an atomic addition and an uncontended lock a row (some 10 ns), starting the
 //!   threads within every rendering, and every sample that a row shares with the rows above and
 //!   below it.
-//! * **When it is right**: for uneven work of which a row is a good piece: many rows, each of them
-//!   much longer than the addition. Tiles share more between their pixels.
+//! * **When it is right**: for uneven work with many rows, each of which takes much longer than the
+//!   addition. Tiles share more between their pixels.
 //!
-//! No two threads get the same number, but the compiler cannot know. So each row lies in a lock of
-//! its own, which nobody else ever asks for: what that costs is the price of safe Rust here.
+//! No two threads get the same number, but the compiler cannot know. So each row has a lock of its
+//! own, which no other thread ever takes: its cost is the cost of safe Rust here.
 
 use parking_lot::Mutex;
 use rayweave_contract::{

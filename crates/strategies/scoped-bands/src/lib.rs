@@ -1,11 +1,11 @@
 //! `scoped-bands`: one scoped thread for each of N bands of rows, and nothing else.
 //!
-//! * **What it decides**: everything beforehand. The picture is cut into as many bands of whole
+//! * **What it decides**: everything beforehand. The image is cut into as many bands of whole
 //!   rows as there are threads, equal but for one row; a thread computes its band as one large
 //!   tile.
 //! * **What it costs**: starting the threads within every rendering, and all of the imbalance of
-//!   the picture: it takes as long as its most expensive band. No lock, no queue, and only the rows
-//!   between two bands are too far apart to share samples.
+//!   the image: it takes as long as its most expensive band. There is no lock and no queue, and
+//!   only the rows on either side of a cut share no samples.
 //! * **When it is right**: for even work, where nothing can be cheaper; and as a first step, since
 //!   it needs the standard library alone. Once some rows cost more than others, leave it.
 //!
@@ -65,7 +65,7 @@ impl Renderer for Bands {
             (rows.start as u32, band)
         });
         thread_team::run(NAME, bands, |team, (y, band)| {
-            // More threads than rows: some have nothing to do.
+            // With more threads than rows, some have nothing to do.
             if band.is_empty() {
                 return Ok(());
             }

@@ -1,10 +1,10 @@
 //! `sequential`: the caller's thread computes tile after tile.
 //!
 //! * **What it decides**: nothing. It is the loop that every other strategy has to beat, and the
-//!   picture that every other strategy has to reproduce.
+//!   image that every other strategy has to reproduce.
 //! * **What it costs**: no thread, no lock, no queue. The other cores idle.
-//! * **When it is right**: for a picture that is done sooner than a thread is started (tens of
-//!   microseconds), or when the cores are busy with other pictures already.
+//! * **When it is right**: for an image that takes less time than starting a thread (tens of
+//!   microseconds), or when the cores are busy with other images already.
 
 use rayweave_contract::{
     Granularity, Image, Output, Plan, Policy, Renderer, Scheduling, Strategy, StrategyError,
@@ -14,7 +14,7 @@ use std::num::NonZeroU32;
 
 const NAME: &str = "sequential";
 
-/// One thread, tile after tile.
+/// The caller's thread, tile after tile.
 #[derive(Debug)]
 pub struct Sequential;
 

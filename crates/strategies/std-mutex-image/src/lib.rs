@@ -6,7 +6,7 @@
 //!   operating system sooner or later than the other.
 //! * **When it is right**: never for this loop, as `mutex-image`. It is here because a C++
 //!   program's `std::mutex` would be rewritten to it, and to show in one table whether the choice
-//!   of a lock is worth a thought.
+//!   of a lock matters.
 
 use rayweave_contract::{
     Granularity, Image, Output, Plan, Policy, Renderer, Scheduling, Strategy, StrategyError,
@@ -18,7 +18,7 @@ use std::sync::{Mutex, PoisonError};
 
 const NAME: &str = "std-mutex-image";
 
-/// As `mutex-image`, with the lock of the standard library.
+/// The strategy `mutex-image` with the lock of the standard library.
 #[derive(Debug)]
 pub struct StdMutexImage;
 
@@ -59,11 +59,11 @@ impl Renderer for StaticShares {
         let image = Mutex::new(image);
         thread_team::run(NAME, shares, |team, share| {
             for index in share {
-                // Computed into a place of the thread's own: the lock is held for the copy only.
+                // Computed into memory of the thread's own: the lock is held for the copy only.
                 let (x, y) = ((index % width) as u32, (index / width) as u32);
                 let mut color = [0.0; 3];
                 team.render_tile(work, &mut Tile::pixel(x, y, &mut color))?;
-                // No panic can come while it is held: a poisoned lock means nothing here.
+                // No panic can occur while it is held: a poisoned lock means nothing here.
                 image.lock().unwrap_or_else(PoisonError::into_inner).pixels_mut()[index] = color;
             }
             Ok(())

@@ -2,11 +2,11 @@
 //!
 //! * **What it decides**: nothing beforehand. All tiles are in one `crossbeam` queue; a thread that
 //!   is done with a tile takes the next, so the load balances itself down to the size of a tile.
-//! * **What it costs**: cutting the picture into tiles, one pop (some 4 ns) a tile, starting the
+//! * **What it costs**: cutting the image into tiles, one pop (some 4 ns) a tile, starting the
 //!   threads within every rendering, and at the end up to one tile's time of waiting.
-//! * **When it is right**: for uneven work whose cost nobody knows beforehand. The tile is the
-//!   knob: small enough that the last one does not matter, large enough that work can be shared
-//!   inside it.
+//! * **When it is right**: for uneven work whose cost is not known beforehand. The size of a tile
+//!   is the parameter: small enough that the last one does not matter, large enough that work can
+//!   be shared inside it.
 //!
 //! A tile brings the slices of the rows it covers, and no two tiles cover the same pixel. So rows
 //! are written without a lock, and the compiler has proved that they may be.
@@ -60,7 +60,7 @@ impl Renderer for Queue {
         let tiles = image.tiles(self.plan.tile);
         let queue = ArrayQueue::new(tiles.len());
         for tile in tiles {
-            // The queue has room for exactly these.
+            // The queue has room for exactly these tiles.
             let _ = queue.push(tile);
         }
         let threads = iter::repeat_n(&queue, self.plan.threads.get());

@@ -1,16 +1,16 @@
 //! `work-stealing`: each thread has tiles of its own, and takes another's when they are done.
 //!
 //! * **What it decides**: a first share for each thread, an equal range of the tiles. A thread
-//!   takes its own from the front; whoever is idle takes half of another's from the back.
-//! * **What it costs**: cutting the picture into tiles and queueing them, starting the threads
-//!   within every rendering, and at the end up to one tile's time of waiting. A tile of one's own
-//!   costs no more than a few ns, whatever the other threads do; a theft some 100 ns.
-//! * **When it is right**: for uneven work on many threads, where one queue would be what they all
-//!   wait for; and where neighbouring tiles in one thread find their data in its cache.
+//!   takes its own from the front; an idle thread takes half of another's from the back.
+//! * **What it costs**: cutting the image into tiles and queueing them, starting the threads
+//!   within every rendering, and at the end up to one tile's time of waiting. To take one of its
+//!   own tiles costs a thread a few ns, whatever the other threads do; a theft some 100 ns.
+//! * **When it is right**: for uneven work on many threads, which would all wait for one queue; and
+//!   where neighbouring tiles in one thread find their data in its cache.
 //!
-//! The deques are `crossbeam`'s, after Chase and Lev (2005). Nobody adds tiles, so a thread that
-//! finds all deques empty leaves. A thief has what it took for a moment in no deque, and who looks
-//! just then leaves too early: then fewer threads share the rest, and nothing is lost.
+//! The deques are `crossbeam`'s, after Chase and Lev (2005). No thread adds tiles, so a thread that
+//! finds all deques empty leaves. For a moment stolen tiles are in no deque, and a thread that
+//! looks then leaves too early: fewer threads share the rest, and nothing is lost.
 
 use crossbeam::deque::{Steal, Stealer, Worker};
 use rayweave_contract::{
@@ -64,7 +64,7 @@ impl Renderer for Deques {
             .map(|share| {
                 let deque = Worker::new_lifo();
                 let own: Vec<Tile<'_>> = tiles.by_ref().take(share.len()).collect();
-                // The owner takes first what was put in last.
+                // The owner takes tiles in the reverse order of their insertion.
                 own.into_iter().rev().for_each(|tile| deque.push(tile));
                 deque
             })
@@ -79,8 +79,8 @@ impl Renderer for Deques {
     }
 }
 
-/// A tile from the first other thread that has some, starting at the next one, so that not all
-/// thieves meet; half of the rest of that thread's tiles come into `deque`.
+/// Steals a tile from the first other thread that has some, starting at the next one, so that not
+/// all thieves meet. Half of the rest of that thread's tiles come into `deque`.
 fn steal<'a>(
     own: usize,
     deque: &Worker<Tile<'a>>,
@@ -92,7 +92,7 @@ fn steal<'a>(
             match victim.steal_batch_with_limit_and_pop(deque, usize::MAX) {
                 Steal::Success(tile) => return Some(tile),
                 Steal::Empty => return None,
-                // Somebody else was at it.
+                // Another thread was faster.
                 Steal::Retry => {}
             }
         }
