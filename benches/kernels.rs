@@ -1,19 +1,19 @@
-//! `cargo bench --bench kernels`: what a ray costs, on one thread.
+//! `cargo bench --bench kernels`: the cost of a ray, on one thread.
 //!
 //! A bench is called `scene/formulas/precision/lanes`, so criterion's filter picks: `cargo bench
-//! --bench kernels -- spheres/robust/f32`. The throughput is in rays, in `filter` in pixels; one
-//! over it is the time of one. What is in each group:
+//! --bench kernels -- spheres/robust/f32`. The throughput is in rays, in `filter` in pixels; its
+//! inverse is the time of one. The groups are:
 //!
 //! | group | rays | a ray tries |
 //! |---|---|---|
 //! | `empty scene` | from the eye | nothing: the least a ray costs |
 //! | `planes`, `spheres`, `triangles`, `cylinders` | from the eye | each of 8 of the kind |
 //! | `shadows of spheres`, ... | these, and from each hit to a light | each of the 8 |
-//! | `tree of N spheres` | from the eye | what the BVH leaves |
-//! | `tree of N mirrors` | these, and from each hit one in a direction of its own | what the BVH leaves |
-//! | `filter` | of the scene `room.toml`, by kind of anti-aliasing | what acceleration leaves |
+//! | `BVH of N spheres` | from the eye | the candidates of the BVH |
+//! | `BVH of N mirrors` | these, and from each hit one in its own direction | the same |
+//! | `filter` | of the scene `room.toml`, by kind of anti-aliasing | the candidates |
 //!
-//! A ray's time has the shading of its hit in it. Criterion measures one bench after the other, and
+//! A ray's time includes the shading of its hit. Criterion measures one bench after the other, and
 //! the machine's clock and its other processes change meanwhile: for counts that repeat see
 //! `scripts/instructions`.
 
@@ -39,8 +39,8 @@ fn kinds(criterion: &mut Criterion) {
 }
 
 fn shadows(criterion: &mut Criterion) {
-    // No shadows of planes: they hide no light from what is on the eye's side of them, and no ray
-    // asks.
+    // Planes have no bench: they hide no light from a point on the eye's side of them, and no ray
+    // tries them.
     for kind in [Kind::Spheres, Kind::Triangles, Kind::Cylinders] {
         let name = format!("shadows of {}", kind.name());
         let probe = Probe::of(kind, Rays::AndShadows);
@@ -58,7 +58,7 @@ fn shadows(criterion: &mut Criterion) {
 fn bvhs(criterion: &mut Criterion) {
     for (rays, what) in [(Rays::FromEye, "spheres"), (Rays::AndMirrored, "mirrors")] {
         for count in [1_000, 100_000] {
-            let name = format!("tree of {count} {what}");
+            let name = format!("BVH of {count} {what}");
             bench_rays(
                 criterion,
                 &name,
@@ -120,7 +120,7 @@ fn filter(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// A group of short benches: there are many, and one rendering takes milliseconds at most.
+/// Opens a group of short benches: there are many, and one rendering takes milliseconds at most.
 fn group<'a>(criterion: &'a mut Criterion, name: &str) -> BenchmarkGroup<'a, WallTime> {
     let mut group = criterion.benchmark_group(name);
     group.sampling_mode(SamplingMode::Flat).sample_size(10).nresamples(2000);
@@ -128,7 +128,7 @@ fn group<'a>(criterion: &'a mut Criterion, name: &str) -> BenchmarkGroup<'a, Wal
     group
 }
 
-/// One bench for each number of lanes.
+/// Adds one bench for each number of lanes.
 fn bench_lanes(
     group: &mut BenchmarkGroup<'_, WallTime>,
     name: &str,
@@ -148,7 +148,7 @@ fn bench_lanes(
                 .get_or_insert_with(|| probe.work(arithmetic, Execution { lanes, ..execution }));
             bencher.iter(|| tiles.iter_mut().for_each(|tile| work.render(tile)));
         });
-        // What was timed is looked at, outside of the timing: the lanes may not change a bit of it.
+        // The timed image is checked, outside of the timing: the lanes may not change a bit of it.
         if work.is_some() {
             let digest = image.digest();
             assert_eq!(digest, *expected.get_or_insert(digest), "{name}: another image");

@@ -1,4 +1,4 @@
-//! What the benches render: two loads to be spread, one even, one with nearly all of its cost in a
+//! The loads that the benches spread over threads, one even, one with nearly all of its cost in a
 //! corner; and [probes](Probe), scenes whose rays are counted.
 
 mod probes;
@@ -13,17 +13,17 @@ use std::path::Path;
 
 /// A work, its name and the size of its image.
 pub struct Load {
-    /// In the names of the benches.
+    /// The name in those of the benches.
     pub name: &'static str,
-    /// In pixels.
+    /// The width of the image in pixels.
     pub width: u32,
-    /// In pixels.
+    /// The height of the image in pixels.
     pub height: u32,
-    /// What is rendered.
+    /// The work to render.
     pub work: Box<dyn Work + Send>,
 }
 
-/// Both loads.
+/// Lists both loads.
 ///
 /// # Panics
 ///
@@ -33,7 +33,7 @@ pub fn loads() -> [Load; 2] {
     [load("balanced", "room.toml", (250, 250)), load("corner", "imbalance.toml", (250, 250))]
 }
 
-/// The repository's scene in this file.
+/// Reads the repository's scene in this file.
 ///
 /// # Panics
 ///

@@ -1,4 +1,4 @@
-//! Scenes to time rays in: what is there is of one kind, and how many rays an image takes is
+//! Scenes to time rays in: their primitives are of one kind, and the number of rays of an image is
 //! known.
 
 use rayweave_contract::{Image, Tile, Work};
@@ -18,17 +18,17 @@ pub struct Probe {
     scene: Scene,
     width: u32,
     height: u32,
-    /// Of its tiles one in so many is rendered: rays are as close to each other as in the whole
-    /// image, at a part of its time.
+    /// One tile in this many is rendered: rays are as close to each other as in the whole image, in
+    /// a part of its time.
     one_tile_in: usize,
 }
 
-/// What follows a ray from the eye.
+/// The rays that follow a ray from the eye.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rays {
-    /// Nothing: there is no light and no mirror.
+    /// None: there is no light and no mirror.
     FromEye,
-    /// One ray to a light, which is at the eye: whatever is seen faces it.
+    /// One ray to a light, which is at the eye: every visible surface faces it.
     AndShadows,
     /// One ray from a mirror.
     AndMirrored,
@@ -48,10 +48,10 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// Each.
+    /// All kinds.
     pub const ALL: [Self; 4] = [Self::Planes, Self::Spheres, Self::Triangles, Self::Cylinders];
 
-    /// In the names of the benches.
+    /// The name in those of the benches.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -64,7 +64,7 @@ impl Kind {
 }
 
 impl Probe {
-    /// Nothing to be seen: what a ray costs that meets nothing.
+    /// An empty scene, for the cost of a ray that meets nothing.
     #[must_use]
     pub fn empty() -> Self {
         Self::small(Rays::FromEye)
@@ -112,8 +112,8 @@ impl Probe {
         probe
     }
 
-    /// Spheres anywhere in a cube, all of it in the image. The more, the smaller: a ray meets as
-    /// many of them whatever their number.
+    /// Spheres anywhere in a cube, all of it in the image. They are the smaller the more there are:
+    /// the number that a ray meets stays the same.
     #[must_use]
     pub fn cloud(count: u32, rays: Rays) -> Self {
         let mut scene = scene(26.0, 1.2, rays);
@@ -133,7 +133,7 @@ impl Probe {
         Self { scene, width, height, one_tile_in: 1 }
     }
 
-    /// An image that is 8 wide and 4 high at the origin, where nothing is yet.
+    /// An empty scene, of which the image shows 8 by 4 at the origin.
     fn small(rays: Rays) -> Self {
         Self::whole(scene(8.0, 1.0, rays), 64, 32)
     }
@@ -149,7 +149,7 @@ impl Probe {
         tracer(&scene, self.width, self.height, execution).unwrap_or_else(|e| panic!("{e}"))
     }
 
-    /// An image for it, without a number in it.
+    /// An image for it, all NaN.
     ///
     /// # Panics
     ///
@@ -180,12 +180,12 @@ impl Probe {
         let work = self.work(Precision::F32.into(), Execution::default());
         let mut image = self.image();
         self.tiles(&mut image).iter_mut().for_each(|tile| work.render(tile));
-        // What is not rendered is NaN, what is not hit is black.
+        // A pixel that is not rendered is NaN, one without a hit is black.
         image.pixels().iter().filter(|[red, ..]| *red > 0.0).count() as u64
     }
 }
 
-/// A scene so far empty, seen from `(0, 0, distance)` towards the origin.
+/// An empty scene, seen from `(0, 0, distance)` towards the origin.
 fn scene(distance: f64, screen_width: f64, rays: Rays) -> Scene {
     let position = [0.0, 0.0, distance].into();
     let mirror = if rays == Rays::AndMirrored { 0.5 } else { 0.0 };

@@ -14,7 +14,7 @@ use std::num::{NonZeroU32, NonZeroUsize};
 use std::thread::available_parallelism;
 use std::time::Duration;
 
-/// As the command line's default.
+/// The default of the command line.
 const TILE: NonZeroU32 = NonZeroU32::new(32).expect("not 0");
 
 fn strategies(criterion: &mut Criterion) {
@@ -25,7 +25,7 @@ fn strategies(criterion: &mut Criterion) {
     for load in loads() {
         let mut group = criterion.benchmark_group(load.name);
         group.throughput(Throughput::Elements(u64::from(load.width) * u64::from(load.height)));
-        // A rendering takes long: one a sample.
+        // A rendering takes long: each sample is one.
         group.sampling_mode(SamplingMode::Flat);
         group
             .sample_size(10)
@@ -38,7 +38,7 @@ fn strategies(criterion: &mut Criterion) {
             for &threads in if alone { &[1][..] } else { &counts } {
                 let plan = Plan { threads: NonZeroUsize::new(threads).expect("not 0"), tile: TILE };
                 let mut renderer = strategy.prepare(plan).expect("the strategy is available");
-                // Poisoned: what a strategy does not write is not the image of the one before it.
+                // A pixel that a strategy does not write is not the one of the strategy before it.
                 image.fill([f32::NAN; 3]);
                 let mut ran = false;
                 group.bench_function(BenchmarkId::new(strategy.name(), threads), |bencher| {
@@ -47,8 +47,7 @@ fn strategies(criterion: &mut Criterion) {
                         renderer.render(&*load.work, &mut image).expect("the work does not fail");
                     });
                 });
-                // What was timed is looked at, outside of the timing; a filter may have left it
-                // out.
+                // A timed image is checked, outside of the timing; a filter may have left it out.
                 if ran {
                     let expected = *expected.get_or_insert_with(|| reference_digest(&load));
                     assert_eq!(image.digest(), expected, "{}: another image", strategy.name());
@@ -59,7 +58,7 @@ fn strategies(criterion: &mut Criterion) {
     }
 }
 
-/// Of the image that every strategy has to draw.
+/// The digest of the image that every strategy has to render.
 fn reference_digest(load: &Load) -> Digest {
     let mut image = Image::new(load.width, load.height).expect("a small image");
     let plan = Plan { threads: NonZeroUsize::MIN, tile: TILE };
