@@ -1,12 +1,12 @@
-//! Bytes as a ray and a primitive.
+//! Decodes bytes into a ray and a primitive.
 //!
-//! A number is any `f32` at all, or one of those where arithmetic turns, or a small fraction with
-//! few bits, or an ordinary one. A ray goes anywhere, or to a point on or beside the primitive.
+//! A number is any `f32`, a special value, a small fraction with few bits, or an ordinary one. A
+//! ray goes anywhere, or to a point on or beside the primitive.
 
 use libfuzzer_sys::arbitrary::{Result, Unstructured};
 use rayweave_accuracy::{Primitive, Ray, guarantees};
 
-/// A source of numbers; one that has run dry gives zeros.
+/// A source of numbers; an exhausted one gives zeros.
 pub type Bytes<'a, 'b> = &'a mut Unstructured<'b>;
 
 /// Decodes a primitive and a point to aim at, and fails where the kernel violates a guarantee.
@@ -16,36 +16,37 @@ pub type Bytes<'a, 'b> = &'a mut Unstructured<'b>;
 /// On a violation, with the case as `rayweave intersect` reads it.
 pub fn check(primitive: impl FnOnce(Bytes<'_, '_>) -> Result<(Primitive, [f32; 3])>, bytes: &[u8]) {
     let mut bytes = Unstructured::new(bytes);
-    let decoded = primitive(&mut bytes).and_then(|(primitive, aim)| Ok((primitive, ray(&mut bytes, aim)?)));
-    if let Ok((primitive, ray)) = decoded
+    let decoded = primitive(&mut bytes);
+    if let Ok((primitive, aim)) = decoded
+        && let Ok(ray) = ray(&mut bytes, aim)
         && let Err(violation) = guarantees::check(&primitive, &ray)
     {
         panic!("{violation}");
     }
 }
 
-/// A plane, and a point that is moved by the normal turned a quarter or so.
+/// Decodes a plane, and a point that is moved from it by the normal turned a quarter or so.
 pub fn plane(bytes: Bytes<'_, '_>) -> Result<(Primitive, [f32; 3])> {
     let (point, normal) = (vector(bytes)?, vector(bytes)?);
     let [x, y, z] = normal;
     Ok((Primitive::Plane { point, normal }, moved(point, [y, -x, z], share(bytes)?)))
 }
 
-/// A sphere, and a point beside its centre by some part of the radius.
+/// Decodes a sphere, and a point beside its centre by some part of the radius.
 pub fn sphere(bytes: Bytes<'_, '_>) -> Result<(Primitive, [f32; 3])> {
     let (center, radius) = (vector(bytes)?, number(bytes)?);
     let aside = [share(bytes)?, share(bytes)?, share(bytes)?];
     Ok((Primitive::Sphere { center, radius }, moved(center, aside, radius)))
 }
 
-/// A triangle, and a point of its plane.
+/// Decodes a triangle, and a point of its plane.
 pub fn triangle(bytes: Bytes<'_, '_>) -> Result<(Primitive, [f32; 3])> {
     let [a, b, c] = [vector(bytes)?, vector(bytes)?, vector(bytes)?];
     let on_edge = moved(a, difference(b, a), share(bytes)?);
     Ok((Primitive::Triangle { a, b, c }, moved(on_edge, difference(c, a), share(bytes)?)))
 }
 
-/// A cylinder, upright but for one time in 16, and a point in or about it.
+/// Decodes a cylinder, upright except one time in 16, and a point in or near it.
 pub fn cylinder(bytes: Bytes<'_, '_>) -> Result<(Primitive, [f32; 3])> {
     let (bottom, radius) = (vector(bytes)?, number(bytes)?);
     let mut top = bottom;
@@ -75,7 +76,7 @@ fn vector(bytes: Bytes<'_, '_>) -> Result<[f32; 3]> {
 fn number(bytes: Bytes<'_, '_>) -> Result<f32> {
     Ok(match bytes.int_in_range(0..=63)? {
         0 => f32::from_bits(bytes.arbitrary()?),
-        1 => *bytes.choose(&TURNS)?,
+        1 => *bytes.choose(&SPECIAL)?,
         2..24 => fraction(bytes)?,
         _ => {
             // Near 2^-12 to 2^12, all bits of the fraction, either sign.
@@ -90,8 +91,7 @@ fn fraction(bytes: Bytes<'_, '_>) -> Result<f32> {
     Ok(f32::from(bytes.arbitrary::<i8>()?) / 16.0)
 }
 
-/// Where on the way from one end of something to the other: anywhere, at an end, or just beside
-/// one.
+/// A share of the way from one end to the other: anywhere, at an end, or just beside one.
 fn share(bytes: Bytes<'_, '_>) -> Result<f32> {
     if bytes.arbitrary()? {
         return fraction(bytes);
@@ -101,8 +101,8 @@ fn share(bytes: Bytes<'_, '_>) -> Result<f32> {
     Ok(if bytes.arbitrary()? { end + beside } else { end - beside })
 }
 
-/// Where arithmetic turns.
-const TURNS: [f32; 16] = [
+/// Zeros, ones and their neighbours, powers of two at limits, subnormals, infinities and NaN.
+const SPECIAL: [f32; 16] = [
     0.0,
     -0.0,
     1.0,
