@@ -1,4 +1,5 @@
-//! Deliberately broken strategies, each of which `check` has to catch with the right pixel named.
+//! Deliberately broken strategies: `check` catches each and names the right pixel. The name of a
+//! test says what its strategy does wrong.
 
 use crate::gradient::{Gradient, PATIENCE, Panics, threads, tile};
 use rayweave_contract::{
@@ -8,13 +9,18 @@ use rayweave_contract::{
 use rayweave_measure::{Case, Check, Fault, Finding};
 use rayweave_registry::reference;
 use std::panic::resume_unwind;
+use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::Duration;
 
 const NAME: &str = "broken";
 
-/// A strategy that goes about rendering in its own, wrong way.
-struct Broken(fn(Plan, &dyn Work, &mut Image) -> Result<(), StrategyError>);
+type Rendered = Result<(), StrategyError>;
+type Render = dyn Fn(Plan, &dyn Work, &mut Image) -> Rendered + Send + Sync;
+
+/// A strategy that renders in its own, wrong way.
+#[derive(Clone)]
+struct Broken(Arc<Render>);
 
 impl Strategy for Broken {
     fn name(&self) -> &'static str {
@@ -38,19 +44,19 @@ impl Strategy for Broken {
     }
 
     fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
-        Ok(Box::new(BrokenRenderer(plan, self.0)))
+        Ok(Box::new(Prepared(plan, self.clone())))
     }
 }
 
-struct BrokenRenderer(Plan, fn(Plan, &dyn Work, &mut Image) -> Result<(), StrategyError>);
+struct Prepared(Plan, Broken);
 
-impl Renderer for BrokenRenderer {
+impl Renderer for Prepared {
     fn render(&mut self, work: &dyn Work, image: &mut Image) -> Result<(), StrategyError> {
-        (self.1)(self.0, work, image)
+        (self.1.0)(self.0, work, image)
     }
 }
 
-/// The right way, to break: tile `i` is computed by the thread "share `i % threads`".
+/// Renders right, to be broken: the thread "share `i % threads`" computes tile `i`.
 fn share_out(threads: usize, work: &dyn Work, tiles: Vec<Tile<'_>>) -> Result<(), StrategyError> {
     let mut shares: Vec<Vec<Tile<'_>>> = (0..threads).map(|_| Vec::new()).collect();
     for (index, tile) in tiles.into_iter().enumerate() {
@@ -71,20 +77,26 @@ fn right(plan: Plan, work: &dyn Work, image: &mut Image) -> Result<(), StrategyE
     share_out(plan.threads.get(), work, image.tiles(plan.tile))
 }
 
-/// For strategies that do not have the threads, and would make everybody wait.
+/// A timeout for strategies that lack threads, for which each check would wait.
 const IMPATIENCE: Duration = Duration::from_millis(200);
 
-/// What a check of two threads and tiles of 8 says about an image of this size.
+/// Checks 20 x 12 pixels, which are three by two tiles, the last column and row smaller.
+fn findings(
+    broken: impl Fn(Plan, &dyn Work, &mut Image) -> Rendered + Send + Sync + 'static,
+) -> Vec<Finding> {
+    findings_at((20, 12), PATIENCE, broken)
+}
+
+/// Checks an image of this size with two threads and tiles of 8.
 fn findings_at(
-    strategy: &dyn Strategy,
-    width: u32,
-    height: u32,
+    (width, height): (u32, u32),
     timeout: Duration,
+    broken: impl Fn(Plan, &dyn Work, &mut Image) -> Rendered + Send + Sync + 'static,
 ) -> Vec<Finding> {
     let cases = [Case { name: "gradient".to_owned(), width, height, work: Box::new(Gradient) }];
     let check = Check {
         reference: reference(),
-        strategies: &[strategy],
+        strategies: &[&Broken(Arc::new(broken))],
         cases: &cases,
         threads: &[threads(2)],
         tiles: &[tile(8)],
@@ -93,16 +105,11 @@ fn findings_at(
     check.run(|_| {}).expect("a reference image").findings
 }
 
-/// The same of 20 x 12 pixels, which are three by two tiles, the last column and row smaller.
-fn findings(broken: fn(Plan, &dyn Work, &mut Image) -> Result<(), StrategyError>) -> Vec<Finding> {
-    findings_at(&Broken(broken), 20, 12, PATIENCE)
-}
-
 /// The tile that a pixel was computed in, and the name of the thread.
 type By = (Rect, Option<String>);
 
-/// The only finding, which has to be a difference: its pixels and its first pixel, what was found
-/// there, in which tile and by whom it was computed.
+/// Returns the only finding, which has to be a difference: the number of pixels, the first of them,
+/// the colour found there, the tile and the thread that computed it.
 #[track_caller]
 fn the_difference(findings: &[Finding]) -> (usize, (u32, u32), Option<Rgb>, Option<By>) {
     let [
@@ -133,8 +140,8 @@ fn drops_a_row() {
     let found = findings(|plan, work, image| {
         let width = image.width() as usize;
         let rows = image.pixels_mut().chunks_mut(width).enumerate();
-        let rows =
-            rows.filter(|(y, _)| *y != 6).map(|(y, row)| Tile::row(0, y as u32, row)).collect();
+        let rows = rows.filter(|(y, _)| *y != 6);
+        let rows = rows.map(|(y, row)| Tile::row(0, y as u32, row)).collect();
         share_out(plan.threads.get(), work, rows)
     });
     assert_eq!(the_difference(&found), (20, (0, 6), None, None));
@@ -233,24 +240,41 @@ fn computes_but_does_not_store() {
 }
 
 #[test]
-fn computes_with_one_thread_only() {
-    let alone = Broken(|plan, work, image| share_out(1, work, image.tiles(plan.tile)));
-    let found = findings_at(&alone, 20, 12, IMPATIENCE);
-    assert_eq!(faults(&found), [&Fault::Threads { expected: 2, found: 1 }]);
-}
-
-#[test]
-fn computes_with_one_thread_more() {
-    let found = findings(|plan, work, image| {
-        share_out(plan.threads.get() + 1, work, image.tiles(plan.tile))
-    });
-    // Once while its threads are counted, once for the image.
-    assert_eq!(faults(&found), [&Fault::Threads { expected: 2, found: 3 }; 2]);
+fn computes_with_another_number_of_threads() {
+    type Count = fn(Plan, &Image) -> usize;
+    let cases: [(Count, Duration, &[usize]); 5] = [
+        (|_, _| 1, IMPATIENCE, &[1]),
+        // Once while its threads are counted, once for the image.
+        (|plan, _| plan.threads.get() + 1, PATIENCE, &[3, 3]),
+        (|plan, _| if plan.tile.get() > 1 { 1 } else { plan.threads.get() }, IMPATIENCE, &[1]),
+        // There are four tiles to meet over, so no more than four threads meet; the image has six.
+        (|plan, _| if plan.tile.get() > 1 { 6 } else { plan.threads.get() }, PATIENCE, &[4, 6]),
+        // Right whenever its threads are counted: only the image's own threads give it away.
+        (|plan, image| plan.threads.get() + usize::from(image.width() == 20), PATIENCE, &[3]),
+    ];
+    for (i, (count, timeout, found)) in cases.into_iter().enumerate() {
+        let findings = findings_at((20, 12), timeout, move |plan, work, image| {
+            share_out(count(plan, image), work, image.tiles(plan.tile))
+        });
+        let expected: Vec<_> =
+            found.iter().map(|&found| Fault::Threads { expected: 2, found }).collect();
+        assert_eq!(faults(&findings), expected.iter().collect::<Vec<_>>(), "case {i}");
+        let place = findings[0].picture.as_ref().map(|picture| picture.scene.as_str());
+        match i {
+            2 => assert_eq!(
+                findings[0].to_string(),
+                "broken, 2 threads, rendezvous 8x32, tiles of 8: \
+                 computing threads: expected 2, found 1"
+            ),
+            4 => assert_eq!(place, Some("gradient")),
+            _ => {}
+        }
+    }
 }
 
 #[test]
 fn joins_one_thread_before_the_next() {
-    let one_after_another = Broken(|plan, work, image| {
+    let found = findings_at((20, 12), IMPATIENCE, |plan, work, image| {
         let mut tiles = image.tiles(plan.tile);
         let share = tiles.len().div_ceil(plan.threads.get());
         for tiles in tiles.chunks_mut(share) {
@@ -259,50 +283,16 @@ fn joins_one_thread_before_the_next() {
         }
         Ok(())
     });
-    let found = findings_at(&one_after_another, 20, 12, IMPATIENCE);
     assert_eq!(faults(&found), [&Fault::Threads { expected: 2, found: 1 }]);
 }
 
-#[test]
-fn computes_with_one_thread_whenever_tiles_are_larger_than_a_pixel() {
-    let alone = Broken(|plan, work, image| {
-        let threads = if plan.tile.get() > 1 { 1 } else { plan.threads.get() };
-        share_out(threads, work, image.tiles(plan.tile))
-    });
-    let found = findings_at(&alone, 20, 12, IMPATIENCE);
-    let message =
-        "broken, 2 threads, rendezvous 8x32, tiles of 8: computing threads: expected 2, found 1";
-    assert_eq!(found.iter().map(Finding::to_string).collect::<Vec<_>>(), [message]);
-}
-
-#[test]
-fn computes_with_six_threads_whenever_tiles_are_larger_than_a_pixel() {
-    let six = |plan: Plan, work: &dyn Work, image: &mut Image| {
-        let threads = if plan.tile.get() > 1 { 6 } else { plan.threads.get() };
-        share_out(threads, work, image.tiles(plan.tile))
-    };
-    // There are four tiles to meet over, so no more than four threads meet; the image has six.
-    let found = findings(six);
-    let expected = [4, 6].map(|found| Fault::Threads { expected: 2, found });
-    assert_eq!(faults(&found), expected.iter().collect::<Vec<_>>());
-}
-
-/// Right whenever its threads are counted: only the image's own threads give it away.
-#[test]
-fn computes_with_one_thread_more_for_one_size_of_image() {
-    let found = findings(|plan, work, image| {
-        let threads = plan.threads.get() + usize::from(image.width() == 20);
-        share_out(threads, work, image.tiles(plan.tile))
-    });
-    assert_eq!(faults(&found), [&Fault::Threads { expected: 2, found: 3 }]);
-    assert_eq!(found[0].picture.as_ref().map(|picture| picture.scene.as_str()), Some("gradient"));
-}
-
-/// A strategy with too few threads makes a check wait once for each number of threads, not for each
-/// size of tile too.
+/// Catches a check that waits for a strategy with too few threads once for each size of tile too,
+/// not only for each number of threads.
 #[test]
 fn is_not_waited_for_again_with_other_tiles() {
-    let alone = Broken(|plan, work, image| share_out(1, work, image.tiles(plan.tile)));
+    let alone = Broken(Arc::new(|plan: Plan, work: &dyn Work, image: &mut Image| {
+        share_out(1, work, image.tiles(plan.tile))
+    }));
     let check = Check {
         reference: reference(),
         strategies: &[&alone],
@@ -345,24 +335,24 @@ fn turns_zero_negative() {
 
 #[test]
 fn leaves_the_last_column_of_odd_widths() {
-    let forgetful = Broken(|plan, work, image| {
+    let forgetful = |plan: Plan, work: &dyn Work, image: &mut Image| {
         let width = image.width() as usize;
         let rows = image.pixels_mut().chunks_mut(width).enumerate();
         let rows = rows.map(|(y, row)| Tile::row(0, y as u32, &mut row[..width / 2 * 2])).collect();
         share_out(plan.threads.get(), work, rows)
-    });
-    assert_eq!(findings_at(&forgetful, 20, 12, PATIENCE), []);
-    assert_eq!(the_difference(&findings_at(&forgetful, 7, 3, PATIENCE)), (3, (6, 0), None, None));
+    };
+    assert_eq!(findings(forgetful), []);
+    let found = findings_at((7, 3), PATIENCE, forgetful);
+    assert_eq!(the_difference(&found), (3, (6, 0), None, None));
 }
 
 #[test]
 fn returns_an_error() {
-    let failing = Broken(|_, work, image| {
+    let found = findings_at((20, 12), IMPATIENCE, |_, work, image| {
         // A work that panics, as a strategy sees it.
         let panics = Panics { work, x: 3, y: 1 };
         image.tiles(tile(2)).iter_mut().try_for_each(|tile| render_tile(NAME, &panics, tile))
     });
-    let found = findings_at(&failing, 20, 12, IMPATIENCE);
     // Once while its threads are counted, once for the image.
     let message = "broken: the work panicked in the tile 2x2 at (2, 0): injected".to_owned();
     assert_eq!(faults(&found), [&Fault::Failed(message.clone()), &Fault::Failed(message)]);
@@ -386,55 +376,20 @@ fn replaces_the_image_by_a_smaller_one() {
     assert_eq!(faults(&found), [&Fault::Failed(message)]);
 }
 
-/// Draws from memory when asked a second time.
-struct Remembers;
-
-impl Strategy for Remembers {
-    fn name(&self) -> &'static str {
-        NAME
-    }
-
-    fn summary(&self) -> &'static str {
-        "computes an image once"
-    }
-
-    fn threads(&self) -> Threads {
-        Threads::PerRender
-    }
-
-    fn policy(&self) -> Policy {
-        Policy {
-            granularity: Granularity::Tile,
-            scheduling: Scheduling::Dynamic { chunk: 1 },
-            output: Output::InPlace,
-        }
-    }
-
-    fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
-        Ok(Box::new(Memory { plan, first: None }))
-    }
-}
-
-struct Memory {
-    plan: Plan,
-    first: Option<Image>,
-}
-
-impl Renderer for Memory {
-    fn render(&mut self, work: &dyn Work, image: &mut Image) -> Result<(), StrategyError> {
-        if let Some(first) = &self.first {
-            image.clone_from(first);
-            return Ok(());
-        }
-        right(self.plan, work, image)?;
-        self.first = Some(image.clone());
-        Ok(())
-    }
-}
-
 #[test]
 fn does_not_compute_the_second_time() {
-    let found = findings_at(&Remembers, 20, 12, PATIENCE);
+    let memory = Mutex::new(None);
+    let found = findings(move |plan, work, image| {
+        let mut memory = memory.lock().expect("no panic");
+        match &*memory {
+            Some(first) if image.width() == 20 => image.clone_from(first),
+            _ => {
+                right(plan, work, image)?;
+                *memory = (image.width() == 20).then(|| image.clone());
+            }
+        }
+        Ok(())
+    });
     assert_eq!(
         faults(&found),
         [&Fault::NotOnce { pixels: 240, x: 0, y: 0, computations: Vec::new() }]
