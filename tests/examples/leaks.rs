@@ -1,47 +1,42 @@
-//! Aims very many rays at the edges and corners of closed meshes, from inside, and counts those
-//! that get out: `cargo run --release -p rayweave-tests --example leaks -- --rays 100000000`.
+//! Aims very many rays at the edges and corners of closed meshes, from inside, and counts leaks:
+//! `cargo run --release -p rayweave-tests --example leaks -- --rays 100000000`.
 
 use std::io::{self, Write};
 use std::process::ExitCode;
 use std::time::Instant;
 
-use clap::{Parser, ValueEnum};
+use clap::Parser;
 use glam::DVec3;
 use rayweave_core::{Caster, Precision};
 use rayweave_measure::random::SplitMix64;
 use rayweave_tests::meshes::{self, Mesh};
+use rayweave_tests::model::Ray;
+use rayweave_tests::scenes::{PRECISIONS, caster};
 use rayweave_tests::transform::{enlarged, moved, rounded};
 
 /// Rays from inside at the edges and corners of closed meshes; a ray that leaves one is a leak.
 /// Exit status 1 if there is any.
 #[derive(Parser)]
 struct Options {
-    /// How many rays in each precision, shared evenly by the meshes
+    /// The number of rays in each precision, shared evenly by the meshes
     #[arg(long, default_value_t = 10_000_000)]
     rays: u64,
-    /// Which rays: the same seed gives the same ones, for any number of threads
+    /// The seed: the same one gives the same rays, for any number of threads
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Only this precision [default: one after the other]
-    #[arg(long, value_enum)]
-    precision: Option<Number>,
-    /// How many threads
+    #[arg(long, value_parser = ["f32", "f64"])]
+    precision: Option<String>,
+    /// The number of threads
     #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u64).range(1..=1024))]
     threads: u64,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum Number {
-    F32,
-    F64,
-}
-
-/// How often each mesh is drawn anew: the first time as it is, then of another size in another
-/// place.
+/// The number of places of each mesh: the first as it is, then others in another size.
 const PLACES: u64 = 16;
-/// The rays of one stream of random numbers.
+/// The number of rays that one stream of random numbers gives.
 const STREAM: u64 = 1 << 14;
-/// How far `t` may be from the right one: on the other side of a mesh it is farther.
+/// The tolerance of `t`: on the other side of a mesh it is off by more.
 const TOLERANCE: f64 = 1e-3;
 
 /// A mesh of some size in some place.
@@ -53,14 +48,7 @@ struct Placed {
     middle: DVec3,
 }
 
-/// A ray from inside, to a point that is hit where `t` is 1.
-#[derive(Clone, Copy, Debug)]
-struct Ray {
-    origin: DVec3,
-    direction: DVec3,
-}
-
-/// Rays that were lost, with the first of them.
+/// The number of lost rays, and the first of them.
 #[derive(Default)]
 struct Leaks {
     count: u64,
@@ -69,23 +57,20 @@ struct Leaks {
 
 fn main() -> io::Result<ExitCode> {
     let options = Options::parse();
-    let precisions = match options.precision {
-        Some(Number::F32) => vec![Precision::F32],
-        Some(Number::F64) => vec![Precision::F64],
-        None => vec![Precision::F32, Precision::F64],
+    let chosen = |precision: &Precision| {
+        options.precision.as_ref().is_none_or(|only| *only == precision.to_string())
     };
     let mut out = io::stdout().lock();
     let meshes = meshes::all();
     let (mut rays, mut leaks, start) = (0, 0, Instant::now());
-    for precision in precisions {
+    for precision in PRECISIONS.into_iter().filter(chosen) {
         for (number, (name, mesh)) in (0..).zip(&meshes) {
             // The first meshes take what is left over.
             let share = (options.rays + meshes.len() as u64 - 1 - number) / meshes.len() as u64;
             let mut random = stream(options.seed, number, u64::MAX);
             let placed: Vec<_> = (0..PLACES)
                 .map(|place| Placed::new(mesh, precision, &mut random, place == 0))
-                .collect::<Result<_, _>>()
-                .map_err(io::Error::other)?;
+                .collect();
             let found = lose(&placed, share, &options, number);
             writeln!(out, "{name:<12} {precision} {share:>12} rays {:>6} leaks", found.count)?;
             if let Some((ray, first)) = found.first {
@@ -100,7 +85,7 @@ fn main() -> io::Result<ExitCode> {
     Ok(if leaks == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// A stream of random numbers of its own for each `part` of a mesh's rays.
+/// Returns a stream of random numbers for each `part` of a mesh's rays.
 fn stream(seed: u64, mesh: u64, part: u64) -> SplitMix64 {
     [mesh, part]
         .into_iter()
@@ -152,7 +137,7 @@ impl Placed {
         precision: Precision,
         random: &mut SplitMix64,
         as_it_is: bool,
-    ) -> Result<Self, rayweave_core::scene::SceneError> {
+    ) -> Self {
         let (mut size, mut middle) = (1.0, DVec3::ZERO);
         if !as_it_is {
             size = libm::exp2(20.0 * random.fraction() - 10.0);
@@ -160,19 +145,13 @@ impl Placed {
                 size * 70.0 * DVec3::from_array([(); 3].map(|()| 2.0 * random.fraction() - 1.0));
         }
         let scene = moved(&enlarged(&meshes::scene_of(mesh), size), middle);
-        // The corners that the kernel has are aimed at, to the last bit.
+        // The rays aim at exactly the corners that the kernel has.
         let scene = if precision == Precision::F32 { rounded(&scene) } else { scene };
         let triangles = scene.triangles.iter().map(|triangle| triangle.vertices).collect();
-        Ok(Self {
-            caster: Caster::new(&scene.with_arithmetic(precision))?,
-            precision,
-            triangles,
-            size,
-            middle,
-        })
+        Self { caster: caster(&scene, precision), precision, triangles, size, middle }
     }
 
-    /// From within 5/8 of the middle to a corner or a point of an edge.
+    /// A ray from within 5/8 of the middle to a corner or a point of an edge, where `t` is 1.
     fn ray(&self, random: &mut SplitMix64) -> Ray {
         let mut coordinate = || match random.below(4) {
             0 => 0.0,

@@ -1,17 +1,18 @@
-//! Images without any strategy: whatever is true of them is true of the work alone.
+//! Images that no strategy computed, and their differences.
 
+use rayweave_accuracy::metrics;
 use rayweave_contract::{Image, Rgb, Tile, Work};
-use rayweave_core::{Acceleration, Execution, Lanes, Precision, Scene, tracer};
+use rayweave_core::{Acceleration, Arithmetic, Execution, Lanes, Scene, tracer};
 use std::num::NonZeroU32;
 
-/// The execution that has nothing of the others': each ray for itself, and against each primitive.
+/// The plain execution: each ray alone, and against each primitive.
 #[must_use]
 pub fn plain() -> Execution {
     let (lanes, acceleration) = (Lanes::One, Acceleration::None);
     Execution { lanes, share_samples: false, acceleration }
 }
 
-/// Every execution; the first is the plain one.
+/// Lists every execution; the first is the plain one.
 #[must_use]
 pub fn executions() -> Vec<Execution> {
     let plain = plain();
@@ -22,7 +23,8 @@ pub fn executions() -> Vec<Execution> {
     shared.flat_map(|e| Lanes::ALL.map(|lanes| Execution { lanes, ..e })).collect()
 }
 
-/// The image in tiles of this side, the last one first; what no tile writes stays NaN.
+/// Renders a scene in tiles of this side, the last one first. A pixel that no tile writes stays
+/// NaN.
 ///
 /// # Panics
 ///
@@ -41,7 +43,27 @@ pub fn in_tiles(
     image
 }
 
-/// Which pixels have other bits, if any: how many, and the first of them.
+/// Compares an execution of a scene, in one tile, with the plain one.
+#[must_use]
+pub fn difference_from_plain(
+    scene: &Scene,
+    size: (u32, u32),
+    executions: impl IntoIterator<Item = Execution>,
+) -> Option<String> {
+    let right = in_tiles(scene, size, plain(), 1000);
+    executions.into_iter().find_map(|execution| {
+        let difference = difference(&in_tiles(scene, size, execution, 1000), &right)?;
+        Some(format!("{}, {:?}: {difference}", scene.render.arithmetic.precision, execution.lanes))
+    })
+}
+
+/// The executions with acceleration, in packets of every width.
+#[must_use]
+pub fn accelerated() -> [Execution; 3] {
+    Lanes::ALL.map(|lanes| Execution { lanes, acceleration: Acceleration::Auto, ..plain() })
+}
+
+/// Says how many pixels differ in their bits, and where the first is; `None` if all are equal.
 #[must_use]
 pub fn difference(found: &Image, right: &Image) -> Option<String> {
     let bits = |color: &Rgb| color.map(f32::to_bits);
@@ -53,7 +75,7 @@ pub fn difference(found: &Image, right: &Image) -> Option<String> {
     Some(format!("{count} pixels differ, the first at {position:?}: {found:?}, not {expected:?}"))
 }
 
-/// Computed one pixel at a time, the last one first: in an order that no strategy has.
+/// Renders one pixel at a time, the last one first: an order that no strategy has.
 ///
 /// # Panics
 ///
@@ -68,14 +90,45 @@ pub fn pixel_by_pixel(work: &dyn Work, width: u32, height: u32) -> Image {
     image
 }
 
-/// The image of `scene` with the robust formulas in this precision.
+/// Renders `scene` in this arithmetic, pixel by pixel.
 ///
 /// # Panics
 ///
 /// If the scene is not sound, or an image of that size cannot be.
 #[must_use]
-pub fn of_scene(scene: &Scene, width: u32, height: u32, precision: Precision) -> Image {
-    let work = tracer(&scene.with_arithmetic(precision), width, height, Execution::default())
-        .expect("a sound scene");
-    pixel_by_pixel(&*work, width, height)
+pub fn of_scene(
+    scene: &Scene,
+    width: u32,
+    height: u32,
+    arithmetic: impl Into<Arithmetic>,
+) -> Image {
+    pixel_by_pixel(&*work(scene, (width, height), arithmetic), width, height)
+}
+
+/// The work of rendering `scene` in this arithmetic.
+///
+/// # Panics
+///
+/// If the scene is not sound.
+#[must_use]
+pub fn work(
+    scene: &Scene,
+    (width, height): (u32, u32),
+    arithmetic: impl Into<Arithmetic>,
+) -> Box<dyn Work + Send> {
+    tracer(&scene.with_arithmetic(arithmetic), width, height, Execution::default())
+        .expect("a sound scene")
+}
+
+/// The peak signal-to-noise ratio in dB of an image, where `truth` is right.
+///
+/// # Panics
+///
+/// If the two have different numbers of pixels.
+#[must_use]
+pub fn psnr(truth: &[[f64; 3]], image: &Image) -> f64 {
+    let mut right = image.clone();
+    assert_eq!(truth.len(), right.pixels().len(), "the images differ in size");
+    right.pixels_mut().iter_mut().zip(truth).for_each(|(p, color)| *p = color.map(|c| c as f32));
+    metrics::psnr(metrics::rmse(&right, image))
 }

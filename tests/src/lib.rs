@@ -1,20 +1,20 @@
-//! What no single crate can test, and what such tests are made of.
+//! The parts that tests of several crates are made of.
 
+/// Random numbers, and what follows from them alone.
+pub(crate) mod draw;
 /// The places where the report that this project starts from is wrong, as cases.
 pub mod errata;
-/// Images that no strategy had a hand in.
+/// Images that no strategy computed.
 pub mod image;
 /// Scenes of many primitives.
 pub mod many_primitives;
 /// Closed meshes.
 pub mod meshes;
-/// How far an image is from the truth.
-pub mod metrics;
-/// The truth: the image model in wide arithmetic, slow and plain.
+/// The image model in `f64`, slow and plain: the truth.
 pub mod model;
 /// Scenes that use everything in the model, drawn by seed.
 pub mod random_scene;
-/// The scenes of the repository.
+/// The scenes of the repository, and short ways to build others.
 pub mod scenes;
 /// Scenes enlarged, moved and mirrored.
 pub mod transform;

@@ -1,15 +1,12 @@
-//! Scenes of as many primitives as one likes, drawn by seed: what a search through them may trip
-//! over.
+//! Scenes of any number of primitives, drawn by seed, in arrangements that are hard for a BVH.
 
-use crate::meshes;
-use crate::random_scene::Draw;
+use crate::draw::Draw;
+use crate::{meshes, scenes};
 use glam::DVec3;
 use rayweave_core::Scene;
-use rayweave_core::scene::{
-    Camera, Cylinder, Light, Material, Plane, RenderSettings, Sphere, Triangle,
-};
+use rayweave_core::scene::{Camera, Cylinder, Light, Material, RenderSettings, Sphere, Triangle};
 
-/// What there is many of.
+/// The kinds of primitives in a scene of many.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
     /// Spheres.
@@ -18,21 +15,21 @@ pub enum Shape {
     Triangle,
     /// Cylinders.
     Cylinder,
-    /// All of these.
+    /// All three kinds.
     Any,
 }
 
 impl Shape {
-    /// Each.
+    /// All shapes.
     pub const ALL: [Self; 4] = [Self::Sphere, Self::Triangle, Self::Cylinder, Self::Any];
 }
 
-/// How they stand.
+/// The places and sizes of many primitives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Arrangement {
     /// Anywhere, small.
     Spread,
-    /// In a few narrow places.
+    /// Gathered in a few narrow places.
     Clusters,
     /// Each reaches into most others.
     Overlapping,
@@ -42,14 +39,14 @@ pub enum Arrangement {
     Copies,
     /// On a grid of whole numbers, of one size, touching: boxes that end where others begin.
     Grid,
-    /// With their middles in the plane y = 0, in which the camera stands.
+    /// Centred in the plane y = 0, in which the camera stands.
     Sheet,
-    /// With their middles in one point: no box tells them apart.
+    /// Centred in one point: no box tells them apart.
     Nested,
 }
 
 impl Arrangement {
-    /// Each.
+    /// All arrangements.
     pub const ALL: [Self; 8] = [
         Self::Spread,
         Self::Clusters,
@@ -62,16 +59,16 @@ impl Arrangement {
     ];
 }
 
-/// The scene of this number: `count` primitives within about 6 of the origin under one or two
-/// lights, some of them mirrors; the camera is beside them or among them. Some have a plane as
-/// well.
+/// Draws the scene of this number: `count` primitives within about 6 of the origin under one or
+/// two lights, some of them mirrors. The camera is beside them or among them. Some scenes have a
+/// plane as well.
 #[must_use]
 pub fn many_primitives(seed: u64, count: usize, shape: Shape, arrangement: Arrangement) -> Scene {
     let mut draw = Draw::new(seed);
-    let mut scene = nothing(&mut draw, arrangement);
+    let mut scene = surroundings(&mut draw, arrangement);
     let places: Vec<DVec3> = (0..20).map(|_| draw.within(5.0)).collect();
     let side = (count as f64).cbrt().ceil();
-    // As many fill the space to about the same extent.
+    // Any number of them fills the space to about the same extent.
     let small = 6.0 / side;
     while bounded(&scene) < count {
         let (place, size) = match arrangement {
@@ -123,12 +120,12 @@ pub fn many_primitives(seed: u64, count: usize, shape: Shape, arrangement: Arran
     scene
 }
 
-/// Closed meshes, `count` of them, anywhere and of any size, some within others; the camera looks
+/// Draws `count` closed meshes anywhere and of any size, some within others. The camera looks
 /// along an axis from a corner's height, or from anywhere.
 #[must_use]
 pub fn meshes(seed: u64, count: usize) -> Scene {
     let mut draw = Draw::new(seed);
-    let mut scene = nothing(&mut draw, Arrangement::Spread);
+    let mut scene = surroundings(&mut draw, Arrangement::Spread);
     let kinds = meshes::all();
     for _ in 0..count {
         let (_, mesh) = &kinds[draw.index(kinds.len())];
@@ -142,12 +139,12 @@ pub fn meshes(seed: u64, count: usize) -> Scene {
     scene
 }
 
-/// How many primitives there are that are not planes.
+/// The number of primitives that are not planes.
 fn bounded(scene: &Scene) -> usize {
     scene.spheres.len() + scene.triangles.len() + scene.cylinders.len()
 }
 
-/// Appends what `one` makes, of an entry that is there if it is to be a copy.
+/// Appends a new entry, made of an old one if it is to be a copy.
 fn add<T: Copy>(
     draw: &mut Draw,
     list: &mut Vec<T>,
@@ -158,7 +155,7 @@ fn add<T: Copy>(
     list.push(one(draw, original));
 }
 
-/// Those of a triangle around `place`.
+/// The corners of a triangle around `place`.
 fn corners(draw: &mut Draw, place: DVec3, size: f64) -> [DVec3; 3] {
     let direction = draw.direction();
     let (right, up) = direction.any_orthonormal_pair();
@@ -184,8 +181,8 @@ fn corners(draw: &mut Draw, place: DVec3, size: f64) -> [DVec3; 3] {
     }
 }
 
-/// Camera, lights, materials, and at times a plane.
-fn nothing(draw: &mut Draw, arrangement: Arrangement) -> Scene {
+/// A scene of a camera, lights, materials, and sometimes a plane.
+fn surroundings(draw: &mut Draw, arrangement: Arrangement) -> Scene {
     let material = |draw: &mut Draw| Material {
         specular: 0.5,
         shininess: 8,
@@ -208,12 +205,7 @@ fn nothing(draw: &mut Draw, arrangement: Arrangement) -> Scene {
     };
     let light = |draw: &mut Draw| {
         let position = if draw.chance(0.5) { draw.within(4.0) } else { draw.direction() * 15.0 };
-        Light { position, color: DVec3::ONE, power: 0.8 }
-    };
-    let plane = |draw: &mut Draw| Plane {
-        point: -7.0 * DVec3::Y,
-        normal: DVec3::Y,
-        material: draw.index(7),
+        Light { power: 0.8, ..scenes::light(position) }
     };
     let mut scene = Scene {
         camera,
@@ -225,16 +217,14 @@ fn nothing(draw: &mut Draw, arrangement: Arrangement) -> Scene {
         },
         lights: vec![light(draw)],
         materials: (0..7).map(|_| material(draw)).collect(),
-        planes: Vec::new(),
-        spheres: Vec::new(),
-        triangles: Vec::new(),
-        cylinders: Vec::new(),
+        ..scenes::empty()
     };
     if draw.chance(0.5) {
         scene.lights.push(light(draw));
     }
     if draw.chance(0.3) {
-        scene.planes.push(plane(draw));
+        let plane = scenes::plane(-7.0 * DVec3::Y, DVec3::Y).of(draw.index(7));
+        scene = scenes::with(scene, [plane]);
     }
     scene
 }

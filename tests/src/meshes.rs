@@ -1,27 +1,25 @@
-//! Closed meshes around the origin: whatever is within 5/8 of it is well inside of each.
+//! Closed meshes around the origin. A point within 5/8 of it is well inside of each.
 
 use crate::scenes;
 use glam::DVec3;
 use rayweave_core::Scene;
-use rayweave_core::scene::Triangle;
 
 /// Triangles that share their corners, bit for bit.
 pub type Mesh = Vec<[DVec3; 3]>;
 
-/// All of them, each with its name.
+/// Lists all meshes, each with its name.
 #[must_use]
 pub fn all() -> [(&'static str, Mesh); 4] {
     [("cube", cube()), ("icosahedron", icosahedron()), ("cone", cone(40)), ("globe", globe())]
 }
 
-/// A scene of nothing else.
+/// A scene of this mesh alone.
 #[must_use]
 pub fn scene_of(mesh: &[[DVec3; 3]]) -> Scene {
-    let triangles = mesh.iter().map(|&vertices| Triangle { vertices, material: 0 }).collect();
-    Scene { triangles, ..scenes::empty() }
+    scenes::of(mesh.iter().copied().map(scenes::triangle))
 }
 
-/// Twelve triangles, whose corners are exact.
+/// A cube of twelve triangles, whose corners are exact.
 #[must_use]
 pub fn cube() -> Mesh {
     let mut triangles = Vec::new();
@@ -37,7 +35,7 @@ pub fn cube() -> Mesh {
     triangles
 }
 
-/// Twenty triangles, five at each corner, whose corners are not exact.
+/// An icosahedron: twenty triangles, five at each corner, whose corners are not exact.
 #[must_use]
 pub fn icosahedron() -> Mesh {
     let golden = f64::midpoint(1.0, 5f64.sqrt());
@@ -63,7 +61,7 @@ pub fn icosahedron() -> Mesh {
     triangles
 }
 
-/// Two corners where many triangles meet: a cone of `sides` sides with its base.
+/// A cone of `sides` sides with its base: many triangles meet in two corners.
 #[must_use]
 pub fn cone(sides: u32) -> Mesh {
     let corner = |k: u32| {
@@ -75,7 +73,7 @@ pub fn cone(sides: u32) -> Mesh {
     (0..sides).flat_map(|k| [tip, middle].map(|end| [end, corner(k), corner(k + 1)])).collect()
 }
 
-/// 320 triangles that are almost a sphere: those of the icosahedron in four, and in four again.
+/// Almost a sphere: the triangles of the icosahedron in four, and in four again, which makes 320.
 #[must_use]
 pub fn globe() -> Mesh {
     let radius = icosahedron()[0][0].length();

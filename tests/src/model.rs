@@ -1,4 +1,4 @@
-//! The image model of `docs/MODEL.md` once more, in its order and as plainly as `f64` allows.
+//! A second implementation of `docs/MODEL.md`, in its order and as plainly as `f64` allows.
 //!
 //! It shares the scene's types with the tracer and nothing else: no lattice, no packets, no
 //! culling. Where the model says "at the point", a distance of a billionth of the coordinates
@@ -7,25 +7,20 @@
 use glam::DVec3;
 use rayweave_core::scene::{Camera, Cylinder, Light, Material, Plane, Scene, Sphere, Triangle};
 
-/// The image of `scene`, in linear light and not clamped: row by row from the top.
+/// Renders `scene` in linear light, not clamped: row by row from the top.
 #[must_use]
 pub fn render(scene: &Scene, width: u32, height: u32) -> Vec<[f64; 3]> {
     let model = Model::new(scene);
-    let mut image = Vec::new();
-    for j in 0..height {
-        for i in 0..width {
-            image.push(model.pixel(i, j, width, height).to_array());
-        }
-    }
-    image
+    let pixels = (0..height).flat_map(|j| (0..width).map(move |i| (i, j)));
+    pixels.map(|(i, j)| model.pixel(i, j, width, height).to_array()).collect()
 }
 
 /// A half-line. `t` counts in units of `direction`, of whatever length that is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Where it starts.
+    /// The point where it starts.
     pub origin: DVec3,
-    /// Where it goes; not zero.
+    /// Its direction, not zero.
     pub direction: DVec3,
 }
 
@@ -71,8 +66,10 @@ impl Primitive {
     #[must_use]
     pub fn roots(&self, ray: &Ray) -> [Option<f64>; 2] {
         match self {
-            Self::Plane(plane) => [plane_root(plane, ray), None],
-            Self::Sphere(sphere) => sphere_roots(sphere, ray),
+            Self::Plane(plane) => [plane_root(plane.point, plane.normal, ray), None],
+            Self::Sphere(Sphere { center, radius, .. }) => {
+                roots_at_distance(*radius, center - ray.origin, ray.direction)
+            }
             Self::Triangle(triangle) => [triangle_root(triangle, ray), None],
             Self::Cylinder(cylinder) => cylinder_roots(cylinder, ray),
         }
@@ -97,6 +94,17 @@ impl Primitive {
         .normalize()
     }
 
+    /// Returns the same primitive in this material.
+    #[must_use]
+    pub fn of(self, material: usize) -> Self {
+        match self {
+            Self::Plane(plane) => Self::Plane(Plane { material, ..plane }),
+            Self::Sphere(sphere) => Self::Sphere(Sphere { material, ..sphere }),
+            Self::Triangle(triangle) => Self::Triangle(Triangle { material, ..triangle }),
+            Self::Cylinder(cylinder) => Self::Cylinder(Cylinder { material, ..cylinder }),
+        }
+    }
+
     fn material(&self) -> usize {
         match self {
             Self::Plane(plane) => plane.material,
@@ -107,39 +115,25 @@ impl Primitive {
     }
 }
 
-/// Where the ray's line meets a plane, unless they are parallel.
-#[must_use]
-pub fn plane_root(plane: &Plane, ray: &Ray) -> Option<f64> {
-    plane_root_through(plane.point, plane.normal, ray)
+/// The root of a plane, unless the ray is parallel to it.
+fn plane_root(point: DVec3, normal: DVec3, ray: &Ray) -> Option<f64> {
+    let slope = ray.direction.dot(normal);
+    (slope != 0.0).then(|| (point - ray.origin).dot(normal) / slope)
 }
 
-/// Where the ray's line meets a sphere.
-#[must_use]
-pub fn sphere_roots(sphere: &Sphere, ray: &Ray) -> [Option<f64>; 2] {
-    roots_at_distance(sphere.radius, sphere.center - ray.origin, ray.direction)
-}
-
-/// Where the ray's line meets a triangle: it passes its three sides, or their ends, all on the
-/// same hand.
-#[must_use]
-pub fn triangle_root(triangle: &Triangle, ray: &Ray) -> Option<f64> {
+/// The root of a triangle: the ray passes its three sides, or their ends, all on the same hand.
+fn triangle_root(triangle: &Triangle, ray: &Ray) -> Option<f64> {
     let [a, b, c] = triangle.vertices.map(|vertex| vertex - ray.origin);
     let hands = [(a, b), (b, c), (c, a)].map(|(from, to)| ray.direction.dot(from.cross(to)));
     let inside = hands.iter().all(|&hand| hand >= 0.0) || hands.iter().all(|&hand| hand <= 0.0);
-    plane_root_through(triangle.vertices[0], triangle_normal(triangle), ray).filter(|_| inside)
+    plane_root(triangle.vertices[0], triangle_normal(triangle), ray).filter(|_| inside)
 }
 
-/// Where the ray's line meets a cylinder's wall; each root is tested for its height.
-#[must_use]
-pub fn cylinder_roots(cylinder: &Cylinder, ray: &Ray) -> [Option<f64>; 2] {
+/// The roots of a cylinder's wall, each tested for its height.
+fn cylinder_roots(cylinder: &Cylinder, ray: &Ray) -> [Option<f64>; 2] {
     let to_axis = horizontal(cylinder.bottom - ray.origin);
     roots_at_distance(cylinder.radius, to_axis, horizontal(ray.direction))
         .map(|root| root.filter(|&t| (cylinder.bottom.y..=cylinder.top.y).contains(&ray.at(t).y)))
-}
-
-fn plane_root_through(point: DVec3, normal: DVec3, ray: &Ray) -> Option<f64> {
-    let slope = ray.direction.dot(normal);
-    (slope != 0.0).then(|| (point - ray.origin).dot(normal) / slope)
 }
 
 /// The `t` with `|t direction - to_centre| = radius`: equally far before and beyond the closest
@@ -170,8 +164,8 @@ fn horizontal(v: DVec3) -> DVec3 {
     DVec3::new(v.x, 0.0, v.z)
 }
 
-/// What counts as no distance between things computed from `a` and `b`.
-fn nothing(a: DVec3, b: DVec3) -> f64 {
+/// The distance that counts as none between points computed from `a` and `b`.
+fn negligible(a: DVec3, b: DVec3) -> f64 {
     1e-9 * a.abs().max(b.abs()).max_element()
 }
 
@@ -179,7 +173,8 @@ fn nothing(a: DVec3, b: DVec3) -> f64 {
 #[derive(Clone, Debug)]
 pub struct Model<'a> {
     scene: &'a Scene,
-    primitives: Vec<Primitive>,
+    /// Planes, spheres, triangles and cylinders, each in the scene's order.
+    pub primitives: Vec<Primitive>,
 }
 
 /// A point of a surface as a ray sees it.
@@ -216,14 +211,9 @@ impl<'a> Model<'a> {
     }
 
     /// The smallest root beyond `after`; of equal ones the first primitive's.
-    fn nearest(&self, ray: &Ray, after: f64) -> Option<(f64, &Primitive)> {
-        self.hits(ray, after, f64::INFINITY).min_by(|(a, _), (b, _)| a.total_cmp(b))
-    }
-
-    /// What a ray from an eye hits, and where.
     #[must_use]
-    pub fn first(&self, ray: &Ray) -> Option<(f64, &Primitive)> {
-        self.nearest(ray, 0.0)
+    pub fn nearest(&self, ray: &Ray, after: f64) -> Option<(f64, &Primitive)> {
+        self.hits(ray, after, f64::INFINITY).min_by(|(a, _), (b, _)| a.total_cmp(b))
     }
 
     // Shading
@@ -233,11 +223,11 @@ impl<'a> Model<'a> {
         ambient + self.scene.lights.iter().map(|light| self.lit(seen, light)).sum::<DVec3>()
     }
 
-    /// What one light adds.
+    /// The colour that one light adds.
     fn lit(&self, &Seen { point, n, d, material, at_point }: &Seen<'_>, light: &Light) -> DVec3 {
         let to_light = light.position - point;
-        let at_light = nothing(light.position, point);
-        // Also without effect: a light at the point itself, or elsewhere in a flat surface.
+        let at_light = negligible(light.position, point);
+        // A light at the point itself, or elsewhere in a flat surface, has no effect either.
         if n.dot(to_light) <= at_light {
             return DVec3::ZERO;
         }
@@ -255,13 +245,9 @@ impl<'a> Model<'a> {
 
     // Reflection
 
-    /// The colour that a ray of unit direction brings.
+    /// The colour that a ray of unit direction brings, of hits beyond `after`.
     #[must_use]
-    pub fn trace(&self, ray: &Ray) -> DVec3 {
-        self.traced(ray, 0.0, 0)
-    }
-
-    fn traced(&self, ray: &Ray, after: f64, bounces: u32) -> DVec3 {
+    pub fn trace(&self, ray: &Ray, after: f64, bounces: u32) -> DVec3 {
         let Some((t, primitive)) = self.nearest(ray, after) else {
             return self.scene.render.background;
         };
@@ -269,7 +255,7 @@ impl<'a> Model<'a> {
         let geometric = primitive.normal(point);
         let n = if geometric.dot(d) > 0.0 { -geometric } else { geometric };
         let material = &self.scene.materials[primitive.material()];
-        let at_point = nothing(ray.origin, point);
+        let at_point = negligible(ray.origin, point);
         let surface = self.surface(&Seen { point, n, d, material, at_point });
         let k = material.reflection;
         if k == 0.0 {
@@ -278,7 +264,7 @@ impl<'a> Model<'a> {
             (1.0 - k) * surface
         } else {
             let mirrored = Ray { origin: point, direction: d - 2.0 * n.dot(d) * n };
-            (1.0 - k) * surface + k * self.traced(&mirrored, at_point, bounces + 1)
+            (1.0 - k) * surface + k * self.trace(&mirrored, at_point, bounces + 1)
         }
     }
 
@@ -290,7 +276,8 @@ impl<'a> Model<'a> {
         let mut sum = DVec3::ZERO;
         for Sample { dx, dy, weight } in samples(self.scene.render.antialiasing) {
             let (x, y) = (f64::from(i) + 0.5 + dx, f64::from(j) + 0.5 + dy);
-            sum += weight * self.trace(&primary_ray(&self.scene.camera, x, y, width, height));
+            sum +=
+                weight * self.trace(&primary_ray(&self.scene.camera, x, y, width, height), 0.0, 0);
         }
         sum
     }
@@ -299,9 +286,9 @@ impl<'a> Model<'a> {
 /// One ray of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// To the right of the pixel's centre, in pixels.
+    /// Offset to the right of the pixel's centre, in pixels.
     pub dx: f64,
-    /// Below the pixel's centre, in pixels.
+    /// Offset downwards from the pixel's centre, in pixels.
     pub dy: f64,
     /// Its share of the pixel; a pixel's shares sum to 1.
     pub weight: f64,

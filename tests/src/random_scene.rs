@@ -1,20 +1,18 @@
 //! Scenes of ordinary scale that use everything in the model, drawn by seed.
-//!
-//! What is not correctly rounded comes from `libm`, so that a seed is one scene on every machine.
 
+use crate::draw::Draw;
+use crate::scenes;
 use crate::transform::{enlarged, moved};
 use glam::DVec3;
 use rayweave_core::scene::{
     Camera, Cylinder, Light, MAX_SHININESS, Material, Plane, RenderSettings, Scene, Sphere,
     Triangle,
 };
-use rayweave_measure::random::SplitMix64;
-use std::ops::RangeInclusive;
 
-/// The scene of this number: always the same, and accepted by [`Scene::check`].
+/// Draws the scene of this number: always the same, and accepted by [`Scene::check`].
 ///
-/// Things stand within about 5 units of the origin, seen from up to 10 away, before the whole is
-/// enlarged by 1/8 to 8 and moved. Some things are the exact copy of another but for their
+/// Primitives stand within about 5 units of the origin, seen from up to 10 away, before the whole
+/// is enlarged by 1/8 to 8 and moved. Some primitives are the exact copy of another in another
 /// material: the first one is seen.
 #[must_use]
 pub fn random_scene(seed: u64) -> Scene {
@@ -22,20 +20,13 @@ pub fn random_scene(seed: u64) -> Scene {
     let materials = draw.several(1..=6, Draw::material);
     let count = materials.len();
     let mut scene = Scene {
-        camera: Camera {
-            position: DVec3::ZERO,
-            look_at: DVec3::ZERO,
-            up: DVec3::Y,
-            focal_length: 1.0,
-            screen_width: 1.0,
-        },
         render: draw.settings(),
-        lights: Vec::new(),
         materials,
         planes: draw.several(0..=2, |draw| draw.plane(count)),
         spheres: draw.several(0..=6, |draw| draw.sphere(count)),
         triangles: draw.several(0..=6, |draw| draw.triangle(count)),
         cylinders: draw.several(0..=4, |draw| draw.cylinder(count)),
+        ..scenes::empty()
     };
     if draw.chance(0.3) {
         scene.triangles.extend(draw.fan(count));
@@ -57,7 +48,7 @@ pub fn random_scene(seed: u64) -> Scene {
     let fewest = u32::from(draw.chance(0.9));
     scene.lights = draw.several(fewest..=4, |draw| draw.light(&camera));
     for light in &mut scene.lights {
-        // Nor between the camera and the light.
+        // Most planes do not stand between the camera and the light either.
         for Plane { point, normal, .. } in &scene.planes {
             let normal = normal.normalize();
             let height = (light.position - point).dot(normal);
@@ -70,87 +61,7 @@ pub fn random_scene(seed: u64) -> Scene {
     moved(&enlarged(&scene, scale), shift)
 }
 
-/// What to make of random numbers.
-pub(crate) struct Draw {
-    random: SplitMix64,
-}
-
 impl Draw {
-    pub(crate) fn new(seed: u64) -> Self {
-        Self { random: SplitMix64::new(seed) }
-    }
-
-    fn bits(&mut self) -> u64 {
-        self.random.next_u64()
-    }
-
-    /// In 0..1.
-    pub(crate) fn unit(&mut self) -> f64 {
-        self.random.fraction()
-    }
-
-    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-
-    /// Between two sizes above 0, each order of magnitude as likely as the next.
-    pub(crate) fn magnitude(&mut self, low: f64, high: f64) -> f64 {
-        libm::exp(self.between(libm::log(low), libm::log(high)))
-    }
-
-    pub(crate) fn integer(&mut self, range: RangeInclusive<u32>) -> u32 {
-        range.start() + (self.bits() % u64::from(range.end() - range.start() + 1)) as u32
-    }
-
-    pub(crate) fn chance(&mut self, share: f64) -> bool {
-        self.unit() < share
-    }
-
-    /// In a cube around the origin.
-    pub(crate) fn within(&mut self, half_side: f64) -> DVec3 {
-        DVec3::from_array([(); 3].map(|()| self.between(-half_side, half_side)))
-    }
-
-    /// Any direction, each as likely.
-    pub(crate) fn direction(&mut self) -> DVec3 {
-        loop {
-            let v = self.within(1.0);
-            if (0.1..=1.0).contains(&v.length()) {
-                return v.normalize();
-            }
-        }
-    }
-
-    pub(crate) fn color(&mut self) -> DVec3 {
-        DVec3::from_array([(); 3].map(|()| self.unit()))
-    }
-
-    pub(crate) fn index(&mut self, count: usize) -> usize {
-        self.integer(0..=count as u32 - 1) as usize
-    }
-
-    fn several<T>(
-        &mut self,
-        count: RangeInclusive<u32>,
-        mut one: impl FnMut(&mut Self) -> T,
-    ) -> Vec<T> {
-        (0..self.integer(count)).map(|_| one(self)).collect()
-    }
-
-    /// At times, ends a list with the copy of an entry.
-    fn copy_one<T: Copy>(
-        &mut self,
-        list: &mut Vec<T>,
-        set_material: impl Fn(&mut T, usize),
-        count: usize,
-    ) {
-        if !list.is_empty() && self.chance(0.15) {
-            let mut copy = list[self.index(list.len())];
-            set_material(&mut copy, self.index(count));
-            list.push(copy);
-        }
-    }
-
     fn settings(&mut self) -> RenderSettings {
         RenderSettings {
             background: if self.chance(0.3) { DVec3::ZERO } else { self.color() },
@@ -183,7 +94,7 @@ impl Draw {
         }
     }
 
-    /// Not too many through the middle of the scene, where a plane hides half of it.
+    /// A plane. Few go through the middle of the scene, where a plane hides half of it.
     fn plane(&mut self, materials: usize) -> Plane {
         let out = self.direction();
         let most = if self.chance(0.5) { 0.0 } else { 0.3 };
@@ -261,7 +172,7 @@ impl Draw {
         Light { position, color: if self.chance(0.4) { DVec3::ONE } else { self.color() }, power }
     }
 
-    /// Sets the camera, and at times puts something around it or in its view.
+    /// Sets the camera, and sometimes puts a primitive around it or in its view.
     fn place_camera(&mut self, scene: &mut Scene) {
         let count = scene.materials.len();
         let distance = self.magnitude(0.1, 10.0);
@@ -316,7 +227,7 @@ impl Draw {
         };
     }
 
-    /// Neither of length 1 nor at a right angle to the view, but well beside it.
+    /// An up vector, neither of length 1 nor at a right angle to the view, but well beside it.
     fn up(&mut self, view: DVec3) -> DVec3 {
         let mut up = DVec3::Y;
         while up.cross(view.normalize()).length() < 0.15 {
@@ -332,7 +243,8 @@ impl Draw {
     }
 }
 
-/// Not a sliver: an image should not hang on the rounding of its corners.
+/// Returns true for a triangle that is no sliver, whose image does not depend on the rounding of
+/// its corners.
 fn is_stout([a, b, c]: [DVec3; 3]) -> bool {
     let longest = (b - a).length().max((c - b).length()).max((a - c).length());
     (b - a).cross(c - a).length() > 0.1 * longest * longest
@@ -350,7 +262,7 @@ mod tests {
     }
 
     #[test]
-    fn every_scene_means_something() {
+    fn every_scene_is_sound() {
         for seed in 0..SEEDS {
             assert_eq!(random_scene(seed).check(), Ok(()), "seed {seed}");
         }
@@ -362,7 +274,7 @@ mod tests {
         assert_ne!(random_scene(7), random_scene(8));
     }
 
-    /// Each of these is so in at least one scene of a hundred.
+    /// Catches a feature that is never drawn: each of these is in at least one scene of a hundred.
     #[test]
     fn everything_is_drawn() {
         type Question = (&'static str, fn(&Scene) -> bool);
@@ -395,19 +307,16 @@ mod tests {
             ("no cylinder", |s| s.cylinders.is_empty()),
             ("several cylinders", |s| s.cylinders.len() > 2),
             ("all four kinds", |s| {
-                let empty = [
-                    s.planes.is_empty(),
-                    s.spheres.is_empty(),
-                    s.triangles.is_empty(),
-                    s.cylinders.is_empty(),
-                ];
-                empty == [false; 4]
+                !s.planes.is_empty()
+                    && !s.spheres.is_empty()
+                    && !s.triangles.is_empty()
+                    && !s.cylinders.is_empty()
             }),
             ("a skew normal", |s| {
                 s.planes.iter().any(|p| p.normal.to_array().iter().all(|&x| x != 0.0))
             }),
             ("a short normal", |s| s.planes.iter().any(|p| p.normal.length() < 0.5)),
-            ("two things in one place", |s| {
+            ("two spheres in one place", |s| {
                 let places: Vec<_> = s.spheres.iter().map(|o| o.center.to_array()).collect();
                 places.iter().enumerate().any(|(i, place)| places[..i].contains(place))
             }),
@@ -444,9 +353,10 @@ mod tests {
         }
     }
 
-    /// Most images show something, and each kind is seen: triangles from both sides.
+    /// Catches scenes of which nothing is seen: most images show something, and each kind is seen,
+    /// triangles from both sides.
     #[test]
-    fn the_things_are_seen() {
+    fn the_primitives_are_seen() {
         let mut seen = [0; 6];
         for scene in scenes() {
             let camera = &scene.camera;
@@ -455,7 +365,7 @@ mod tests {
                 direction: (camera.look_at - camera.position).normalize(),
             };
             let model = Model::new(&scene);
-            let what = match model.first(&ray) {
+            let what = match model.nearest(&ray, 0.0) {
                 None => 0,
                 Some((_, Primitive::Plane(_))) => 1,
                 Some((_, Primitive::Sphere(_))) => 2,

@@ -1,14 +1,21 @@
-//! The scenes that the repository comes with.
+//! The scenes of the repository, and short ways to build others.
 
-use crate::errata;
-use rayweave_core::Scene;
+use crate::model::Primitive;
+use glam::DVec3;
+use rayweave_core::scene::{
+    Camera, Cylinder, Light, Material, Plane, RenderSettings, Sphere, Triangle,
+};
+use rayweave_core::{Arithmetic, Caster, Precision, Scene};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Their names: those of the files, without the ending.
+/// Both precisions.
+pub const PRECISIONS: [Precision; 2] = [Precision::F32, Precision::F64];
+
+/// The names of the scenes in `scenes`: those of the files, without the ending.
 pub const NAMES: [&str; 3] = ["report", "room", "imbalance"];
 
-/// The scene of this name; that of a hard one is `hard/fan`.
+/// Reads the scene of this name; that of a hard one is `hard/fan`.
 ///
 /// # Panics
 ///
@@ -20,7 +27,7 @@ pub fn named(name: &str) -> Scene {
         .scene
 }
 
-/// The names of the scenes that are hard for one thing or another, as the folder has them, sorted.
+/// Lists the names of the scenes in `scenes/hard`, sorted.
 ///
 /// # Panics
 ///
@@ -37,14 +44,95 @@ pub fn hard() -> Vec<String> {
     names
 }
 
-/// Nothing at all, under one light: something to put things into, whose material is number 0.
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes")
+}
+
+/// A scene without primitives, whose only material is red with the model's defaults.
+#[must_use]
+pub fn looking(from: DVec3, at: DVec3, lights: &[DVec3]) -> Scene {
+    Scene {
+        camera: Camera {
+            position: from,
+            look_at: at,
+            up: DVec3::Y,
+            focal_length: 1.0,
+            screen_width: 1.0,
+        },
+        render: RenderSettings { antialiasing: 0, ..RenderSettings::default() },
+        lights: lights.iter().copied().map(light).collect(),
+        materials: vec![Material::new(DVec3::X)],
+        planes: Vec::new(),
+        spheres: Vec::new(),
+        triangles: Vec::new(),
+        cylinders: Vec::new(),
+    }
+}
+
+/// A scene without primitives under one light, seen from the report's eye.
 #[must_use]
 pub fn empty() -> Scene {
-    let mut scene = errata::shadings().swap_remove(0).scene;
-    scene.triangles.clear();
+    let at = DVec3::new(11.0 / 15.0, 8.0 / 15.0, 8.0 / 3.0);
+    looking(-2.0 * DVec3::Z, at, &[DVec3::new(15.0, -10.0, -10.0)])
+}
+
+/// A scene of these primitives alone, in the order of the model.
+#[must_use]
+pub fn of(primitives: impl IntoIterator<Item = Primitive>) -> Scene {
+    with(empty(), primitives)
+}
+
+/// Appends primitives to a scene.
+#[must_use]
+pub fn with(mut scene: Scene, primitives: impl IntoIterator<Item = Primitive>) -> Scene {
+    for primitive in primitives {
+        match primitive {
+            Primitive::Plane(plane) => scene.planes.push(plane),
+            Primitive::Sphere(sphere) => scene.spheres.push(sphere),
+            Primitive::Triangle(triangle) => scene.triangles.push(triangle),
+            Primitive::Cylinder(cylinder) => scene.cylinders.push(cylinder),
+        }
+    }
     scene
 }
 
-fn folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes")
+/// A white light of power 1.
+#[must_use]
+pub const fn light(position: DVec3) -> Light {
+    Light { position, color: DVec3::ONE, power: 1.0 }
+}
+
+/// A plane of material 0.
+#[must_use]
+pub const fn plane(point: DVec3, normal: DVec3) -> Primitive {
+    Primitive::Plane(Plane { point, normal, material: 0 })
+}
+
+/// A sphere of material 0.
+#[must_use]
+pub const fn sphere(center: DVec3, radius: f64) -> Primitive {
+    Primitive::Sphere(Sphere { center, radius, material: 0 })
+}
+
+/// A triangle of material 0.
+#[must_use]
+pub const fn triangle(vertices: [DVec3; 3]) -> Primitive {
+    Primitive::Triangle(Triangle { vertices, material: 0 })
+}
+
+/// A cylinder of material 0.
+#[must_use]
+pub const fn cylinder(bottom: DVec3, height: f64, radius: f64) -> Primitive {
+    let top = DVec3::new(bottom.x, bottom.y + height, bottom.z);
+    Primitive::Cylinder(Cylinder { bottom, top, radius, material: 0 })
+}
+
+/// Prepares a scene for single rays.
+///
+/// # Panics
+///
+/// If the scene is not sound.
+#[must_use]
+pub fn caster(scene: &Scene, arithmetic: impl Into<Arithmetic>) -> Caster {
+    Caster::new(&scene.with_arithmetic(arithmetic)).expect("a sound scene")
 }

@@ -1,10 +1,10 @@
-//! Whole scenes enlarged, moved and mirrored: camera, lights and things together, so that the
+//! Whole scenes enlarged, moved and mirrored: camera, lights and primitives together, so that the
 //! image stays what it was, or becomes its mirror image.
 
 use glam::DVec3;
 use rayweave_core::Scene;
 
-/// Enlarged by `factor` around the origin. For a power of two nothing is rounded.
+/// Enlarges a scene by `factor` around the origin. For a power of two nothing is rounded.
 #[must_use]
 pub fn enlarged(scene: &Scene, factor: f64) -> Scene {
     let mut enlarged = with_points(scene, |point| point * factor);
@@ -13,13 +13,14 @@ pub fn enlarged(scene: &Scene, factor: f64) -> Scene {
     enlarged
 }
 
-/// Moved by `offset`.
+/// Moves a scene by `offset`.
 #[must_use]
 pub fn moved(scene: &Scene, offset: DVec3) -> Scene {
     with_points(scene, |point| point + offset)
 }
 
-/// Mirrored in the plane through the origin at a right angle to `AXIS`: 0 is x, 1 is y, 2 is z.
+/// Mirrors a scene in the plane through the origin at a right angle to `AXIS`: 0 is x, 1 is y, 2
+/// is z.
 #[must_use]
 pub fn mirrored<const AXIS: usize>(scene: &Scene) -> Scene {
     let mirror = |v: DVec3| {
@@ -36,7 +37,7 @@ pub fn mirrored<const AXIS: usize>(scene: &Scene) -> Scene {
     mirrored
 }
 
-/// Every number rounded to `f32`, so that no precision rounds it again.
+/// Rounds every coordinate and radius to `f32`, so that no precision rounds it again.
 #[must_use]
 pub fn rounded(scene: &Scene) -> Scene {
     let round = |x: f64| f64::from(x as f32);

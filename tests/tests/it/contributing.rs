@@ -1,13 +1,11 @@
-//! Takes the steps of CONTRIBUTING.md, "How to add a strategy", as they stand there, in a copy of
-//! the workspace. Catches a contract that changed under its description, and any place besides the
-//! registry that has to know a strategy. In the same copy: a machine whose C compiler has no
-//! OpenMP.
+//! The steps of CONTRIBUTING.md, "How to add a strategy", work as they stand there, in a copy of
+//! the workspace. The same copy serves for a machine whose C compiler has no OpenMP.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-/// What a copy of the workspace needs to be built.
+/// The parts of the workspace that a copy needs to be built.
 const PARTS: [&str; 8] = [
     ".cargo",
     "Cargo.toml",
@@ -39,7 +37,7 @@ fn copy(from: &Path, to: &Path) {
     }
 }
 
-/// The blocks of `language` in a Markdown text, without the indentation of their list.
+/// Returns the blocks of `language` in a Markdown text, without the indentation of their list.
 fn blocks(text: &str, language: &str) -> Vec<String> {
     let fence = format!("```{language}");
     let mut blocks = Vec::new();
@@ -64,18 +62,14 @@ fn insert(file: &Path, after: &str, line: &str) {
 /// Puts `new` in place of the one line that is `old`.
 fn replace(file: &Path, old: &str, new: &str) {
     let text = fs::read_to_string(file).expect("the file");
-    assert_eq!(
-        text.lines().filter(|found| found.trim() == old).count(),
-        1,
-        "{old} in {}",
-        file.display()
-    );
+    let count = text.lines().filter(|found| found.trim() == old).count();
+    assert_eq!(count, 1, "{old} in {}", file.display());
     fs::write(file, text.replacen(old, new, 1)).expect("written");
 }
 
 fn cargo(workspace: &Path, environment: &[(&str, &Path)], arguments: &[&str]) -> Output {
     Command::new(env!("CARGO"))
-        // Here our own crates need not be fast, but soon there.
+        // Our own crates have to be built soon here, not to be fast.
         .args(["--config", "profile.dev.opt-level = 0"])
         .args(arguments)
         .envs(environment.iter().copied())
@@ -86,13 +80,13 @@ fn cargo(workspace: &Path, environment: &[(&str, &Path)], arguments: &[&str]) ->
         .expect("cargo starts")
 }
 
-/// The folder above `debug/deps`, where this test lies.
+/// Returns the folder above `debug/deps`, which has this test in it.
 fn target_folder() -> PathBuf {
     let test = std::env::current_exe().expect("the test's own path");
     test.ancestors().nth(3).expect("target/debug/deps/test").to_owned()
 }
 
-/// What others wrote need not be compiled once more: their files, in both places.
+/// Gives the copy the dependencies that are compiled already.
 fn share_dependencies() {
     let [from, to] = ["", "contributing"].map(|part| target_folder().join(part).join("debug"));
     for part in ["build", "deps", ".fingerprint"] {
@@ -100,8 +94,8 @@ fn share_dependencies() {
     }
 }
 
-/// Files of one folder in another, but for our own: by a second name where nobody writes, which is
-/// not so of the fingerprints.
+/// Puts the files of one folder in another, except those of our own crates. They get a second name,
+/// but fingerprints, which Cargo writes, are copied.
 fn share(from: &Path, to: &Path) {
     let Ok(entries) = fs::read_dir(from) else { return };
     fs::create_dir_all(to).expect("a folder");
@@ -120,7 +114,7 @@ fn share(from: &Path, to: &Path) {
     }
 }
 
-/// Cargo tells by the time whether a file is still good.
+/// Copies a file with its time, by which Cargo knows that it is still good.
 fn copy_with_time(from: &Path, to: &Path) {
     fs::copy(from, to).expect("a copy");
     let time = fs::metadata(from).and_then(|file| file.modified()).expect("a time");
@@ -131,7 +125,7 @@ fn copy_with_time(from: &Path, to: &Path) {
         .expect("the same time");
 }
 
-/// What the workspace's `rayweave` prints, built in this environment; without a warning.
+/// Returns the output of the workspace's `rayweave`, built in this environment without a warning.
 fn run(workspace: &Path, environment: &[(&str, &Path)], arguments: &[&str]) -> String {
     let build = ["run", "--offline", "--quiet", "-p", "rayweave", "--"];
     let output = cargo(workspace, environment, &[&build, arguments].concat());
@@ -142,6 +136,8 @@ fn run(workspace: &Path, environment: &[(&str, &Path)], arguments: &[&str]) -> S
     out.into_owned()
 }
 
+/// Catches a contract that changed under its description, and any place besides the registry that
+/// has to know a strategy.
 #[test]
 fn the_steps_add_a_strategy() {
     share_dependencies();
@@ -179,7 +175,7 @@ fn the_steps_add_a_strategy() {
     without_openmp(workspace);
 }
 
-/// What is built by a compiler that knows no OpenMP has the other strategies.
+/// Asserts that a build by a compiler that knows no OpenMP has the other strategies.
 #[cfg(unix)]
 fn without_openmp(workspace: &Path) {
     use std::os::unix::fs::PermissionsExt;
@@ -196,17 +192,8 @@ fn without_openmp(workspace: &Path) {
         compiler.display()
     );
     assert_eq!(list.matches(&reason).count(), 3, "{list}");
-    let named = [
-        "run",
-        "--offline",
-        "--quiet",
-        "-p",
-        "rayweave",
-        "--",
-        "render",
-        "--strategy",
-        "openmp-guided",
-    ];
+    let named = "run --offline --quiet -p rayweave -- render --strategy openmp-guided";
+    let named: Vec<_> = named.split(' ').collect();
     let refused = cargo(workspace, &[("CC", &compiler)], &named);
     assert_eq!(refused.status.code(), Some(2));
     assert!(

@@ -1,68 +1,43 @@
-//! Culling by planes, cones and bounding spheres changes no image: in scenes of
-//! a few primitives acceleration has the bits of trying everything, also where eyes and lights stand
-//! in planes, on surfaces and inside of things, and where rays run along them.
+//! Culling by planes, cones and bounding spheres changes no image. In scenes of a few primitives
+//! acceleration has the bits of trying everything, also where eyes and lights stand in planes, on
+//! surfaces and inside of primitives, and where rays run along them.
 
-use glam::DVec3;
+use glam::{DVec3, dvec3 as v};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use rayweave_contract::Image;
-use rayweave_core::scene::{
-    Camera, Cylinder, Light, Material, Plane, RenderSettings, Sphere, Triangle,
-};
-use rayweave_core::{Acceleration, Execution, Lanes, Precision, Scene};
-use rayweave_tests::image::{difference, in_tiles, plain};
+use rayweave_core::scene::{Camera, Light, Material, RenderSettings};
+use rayweave_core::{Execution, Scene};
+use rayweave_tests::image::{accelerated, difference, difference_from_plain, in_tiles};
+use rayweave_tests::model::Primitive;
+use rayweave_tests::scenes::{self, PRECISIONS, plane, with};
 use rayweave_tests::transform::{enlarged, moved};
 
-const PRECISIONS: [Precision; 2] = [Precision::F32, Precision::F64];
 const SIZE: (u32, u32) = (12, 9);
 
-fn image(scene: &Scene, execution: Execution) -> Image {
-    in_tiles(scene, SIZE, execution, 1000)
-}
-
-/// What is different with acceleration, in any packet, from an image that tries everything.
+/// Compares acceleration, in packets of every width, with trying everything.
 fn acceleration_differs(scene: &Scene) -> Option<String> {
     PRECISIONS.into_iter().find_map(|precision| {
-        let scene = &scene.with_arithmetic(precision);
-        let right = image(scene, plain());
-        Lanes::ALL.into_iter().find_map(|lanes| {
-            let execution = Execution { lanes, acceleration: Acceleration::Auto, ..plain() };
-            let difference = difference(&image(scene, execution), &right)?;
-            Some(format!("{precision}, {lanes:?}: {difference}"))
-        })
+        difference_from_plain(&scene.with_arithmetic(precision), SIZE, accelerated())
     })
 }
 
-#[track_caller]
-fn assert_acceleration_agrees(scene: &Scene, name: &str) {
-    assert_eq!(acceleration_differs(scene), None, "{name}");
-}
-
-// Scenes that are hard for one thing
-
-fn v(x: f64, y: f64, z: f64) -> DVec3 {
-    DVec3::new(x, y, z)
-}
+// Scenes that are hard in one way
 
 fn light(position: DVec3) -> Light {
-    Light { position, color: DVec3::ONE, power: 0.7 }
+    Light { power: 0.7, ..scenes::light(position) }
 }
 
-fn plane(point: DVec3, normal: DVec3) -> Plane {
-    Plane { point, normal, material: 0 }
+fn sphere(center: DVec3, radius: f64) -> Primitive {
+    scenes::sphere(center, radius).of(1)
 }
 
-fn sphere(center: DVec3, radius: f64) -> Sphere {
-    Sphere { center, radius, material: 1 }
+fn triangle(vertices: [DVec3; 3]) -> Primitive {
+    scenes::triangle(vertices).of(2)
 }
 
-fn triangle(vertices: [DVec3; 3]) -> Triangle {
-    Triangle { vertices, material: 2 }
-}
-
-fn cylinder(bottom: DVec3, height: f64, radius: f64) -> Cylinder {
-    Cylinder { bottom, top: bottom + height * DVec3::Y, radius, material: 3 }
+fn cylinder(bottom: DVec3, height: f64, radius: f64) -> Primitive {
+    scenes::cylinder(bottom, height, radius).of(3)
 }
 
 fn camera(position: DVec3, look_at: DVec3) -> Camera {
@@ -70,8 +45,8 @@ fn camera(position: DVec3, look_at: DVec3) -> Camera {
     Camera { position, look_at, up, focal_length: 1.0, screen_width: 1.5 }
 }
 
-/// Before a floor with one of each bounded primitive; number 1 of the materials is a mirror.
-fn scene() -> Scene {
+/// A scene without primitives; material 1 is a mirror.
+fn bare() -> Scene {
     let material =
         |color, reflection| Material { specular: 0.5, reflection, ..Material::new(color) };
     Scene {
@@ -89,11 +64,20 @@ fn scene() -> Scene {
             material(v(0.3, 0.4, 1.0), 0.0),
             material(v(1.0, 0.5, 0.1), 0.0),
         ],
-        planes: vec![plane(v(0.0, -1.0, 0.0), DVec3::Y)],
-        spheres: vec![sphere(v(-1.0, 0.0, 1.0), 1.0)],
-        triangles: vec![triangle([v(0.0, -1.0, 1.0), v(2.0, -1.0, 0.0), v(1.0, 2.0, 1.0)])],
-        cylinders: vec![cylinder(v(-2.0, -1.0, -1.0), 1.5, 0.5)],
+        ..scenes::empty()
     }
+}
+
+/// A scene of a sphere, a triangle and a cylinder.
+fn bounded() -> Scene {
+    let corners = [v(0.0, -1.0, 1.0), v(2.0, -1.0, 0.0), v(1.0, 2.0, 1.0)];
+    let sphere = sphere(v(-1.0, 0.0, 1.0), 1.0);
+    with(bare(), [sphere, triangle(corners), cylinder(v(-2.0, -1.0, -1.0), 1.5, 0.5)])
+}
+
+/// The same on a floor.
+fn scene() -> Scene {
+    with(bounded(), [plane(v(0.0, -1.0, 0.0), DVec3::Y)])
 }
 
 /// A scene, and the same moved and enlarged so that its numbers are no longer whole.
@@ -106,39 +90,40 @@ fn placed(scene: &Scene) -> [Scene; 4] {
     ]
 }
 
+#[track_caller]
 fn assert_agrees_everywhere(scene: &Scene, name: &str) {
     for (i, scene) in placed(scene).iter().enumerate() {
-        assert_acceleration_agrees(scene, &format!("{name}, place {i}"));
+        assert_eq!(acceleration_differs(scene), None, "{name}, place {i}");
     }
 }
 
-/// Catches a side that is told of an eye or a light in the plane itself, by rounding: with the eye
-/// there, nothing is on either side; a light there lights nothing of the plane, and the plane hides
-/// it.
+/// Catches a side that rounding assigns to an eye or a light in the plane itself: with the eye
+/// there, nothing is on either side; a light there lights nothing of the plane, and the plane
+/// hides it.
 #[test]
 fn eye_and_light_in_a_plane() {
     let tilted = v(0.3, 1.0, -0.2);
     for normal in [DVec3::Y, -DVec3::Y, tilted, -tilted, v(1.0, 1.0, 1.0), v(1e-9, 1.0, 0.0)] {
-        let mut scene = scene();
-        scene.planes.push(plane(scene.camera.position, normal));
+        let eye = bare().camera.position;
+        let mut scene = with(scene(), [plane(eye, normal)]);
         assert_agrees_everywhere(&scene, &format!("eye in the plane, {normal}"));
         let mut along = scene.clone();
         let aside = normal.any_orthogonal_vector();
-        along.camera.look_at = along.camera.position + aside;
+        along.camera.look_at = eye + aside;
         along.camera.up = normal;
         assert_agrees_everywhere(&along, &format!("eye in the plane and along it, {normal}"));
-        scene.lights.push(light(scene.camera.position + aside));
+        scene.lights.push(light(eye + aside));
         assert_agrees_everywhere(&scene, &format!("both in the plane, {normal}"));
 
-        let mut scene = self::scene();
-        scene.lights.push(light(v(1.0, 2.5, -1.0)));
-        scene.planes.push(plane(scene.lights[1].position + 3.0 * aside, normal));
+        let lamp = v(1.0, 2.5, -1.0);
+        let mut scene = with(self::scene(), [plane(lamp + 3.0 * aside, normal)]);
+        scene.lights.push(light(lamp));
         assert_agrees_everywhere(&scene, &format!("light in the plane, {normal}"));
     }
 }
 
-/// Catches a light that is left out though it lights something, or one behind a plane that lights
-/// what is before it: with such a light an image is what it is without.
+/// Catches a light that is left out though it lights something, or a light behind a plane that
+/// lights something before it: such a light changes no image.
 #[test]
 fn a_light_behind_a_plane_lights_nothing() {
     for (point, normal) in [
@@ -147,8 +132,7 @@ fn a_light_behind_a_plane_lights_nothing() {
         (v(0.0, 0.0, 4.0), v(0.1, 0.2, 1.0)),
         (v(4.0, 0.0, 0.0), v(-1.0, 0.3, 0.0)),
     ] {
-        let mut without = scene();
-        without.planes = vec![plane(point, normal)];
+        let without = with(bounded(), [plane(point, normal)]);
         for distance in [1e-3, 1.0, 100.0] {
             let eye = without.camera.position;
             let height = (eye - point).dot(normal.normalize());
@@ -157,20 +141,18 @@ fn a_light_behind_a_plane_lights_nothing() {
             with.lights.insert(0, light(behind));
             assert_agrees_everywhere(&with, &format!("{distance} behind {normal}"));
             if distance < 1.0 {
-                // At the third place that is within the rounding of `f32`: the light may stand in
+                // At the third place this is within the rounding of `f32`: the light may stand in
                 // the plane.
                 continue;
             }
             for (with, without) in placed(&with).iter().zip(placed(&without)) {
                 for precision in PRECISIONS {
                     let [found, right] = [with, &without].map(|scene| {
-                        image(&scene.with_arithmetic(precision), Execution::default())
+                        let scene = scene.with_arithmetic(precision);
+                        in_tiles(&scene, SIZE, Execution::default(), 1000)
                     });
-                    assert_eq!(
-                        difference(&found, &right),
-                        None,
-                        "{distance} behind {normal}, {precision}"
-                    );
+                    let name = format!("{distance} behind {normal}, {precision}");
+                    assert_eq!(difference(&found, &right), None, "{name}");
                 }
             }
         }
@@ -180,7 +162,7 @@ fn a_light_behind_a_plane_lights_nothing() {
 /// Catches a cone around a primitive that has no outside: eyes and lights in it, on it, at its
 /// middle.
 #[test]
-fn eye_and_light_in_and_on_things() {
+fn eye_and_light_in_and_on_primitives() {
     let scene = scene();
     let [a, b, c] = scene.triangles[0].vertices;
     let (sphere, cylinder) = (scene.spheres[0], scene.cylinders[0]);
@@ -213,22 +195,23 @@ fn eye_and_light_in_and_on_things() {
     }
 }
 
-/// Catches a point that is taken to be on the eye's side of a plane though a thing cuts the plane
-/// there: what is on the other side is seen by no ray.
+/// Catches a point that is taken to be on the eye's side of a plane though a primitive cuts the
+/// plane there: no ray sees the other side.
 #[test]
-fn things_that_cut_planes() {
+fn primitives_that_cut_planes() {
     for normal in [DVec3::Y, v(0.3, 1.0, -0.2), DVec3::Z] {
         for distance in [-1.0, -0.5, 0.0, 0.25, 1.0] {
             let mut scene = scene();
             scene.lights.extend([light(v(-3.0, -6.0, 1.0)), light(v(0.0, 2.0, 7.0))]);
-            scene
-                .planes
-                .push(plane(scene.spheres[0].center + distance * normal.normalize(), normal));
-            assert_agrees_everywhere(&scene, &format!("a sphere, {normal}, {distance}"));
-            scene.planes[1].point = scene.triangles[0].vertices[2] - distance * normal.normalize();
-            assert_agrees_everywhere(&scene, &format!("a triangle, {normal}, {distance}"));
-            scene.planes[1].point = scene.cylinders[0].bottom - distance * normal.normalize();
-            assert_agrees_everywhere(&scene, &format!("a cylinder, {normal}, {distance}"));
+            let away = distance * normal.normalize();
+            for (what, point) in [
+                ("sphere", scene.spheres[0].center + away),
+                ("triangle", scene.triangles[0].vertices[2] - away),
+                ("cylinder", scene.cylinders[0].bottom - away),
+            ] {
+                let cut = with(scene.clone(), [plane(point, normal)]);
+                assert_agrees_everywhere(&cut, &format!("a {what}, {normal}, {distance}"));
+            }
         }
     }
 }
@@ -238,7 +221,7 @@ fn things_that_cut_planes() {
 fn planes_that_cut_each_other() {
     let wedge = vec![plane(DVec3::ZERO, v(1.0, 1.0, 0.0)), plane(DVec3::ZERO, v(-1.0, 1.0, 0.0))];
     let walls = [DVec3::X, DVec3::Y, DVec3::Z].map(|normal| [normal, -normal]);
-    let room = walls.as_flattened().iter().map(|&normal| plane(-6.0 * normal, normal)).collect();
+    let room = walls.as_flattened().iter().map(|&n| plane(-6.0 * n, n)).collect();
     let twice = vec![plane(-DVec3::Y, DVec3::Y), plane(-DVec3::Y, -3.0 * DVec3::Y)];
     let crossing =
         vec![plane(DVec3::ZERO, v(0.1, 1.0, 0.0)), plane(DVec3::ZERO, v(-0.1, 1.0, 0.0))];
@@ -246,7 +229,7 @@ fn planes_that_cut_each_other() {
         [("wedge", wedge), ("room", room), ("twice", twice), ("crossing", crossing)]
     {
         for eye in [v(0.0, 1.0, -5.0), v(-5.0, 1.0, -1.0), v(1.0, -5.0, 0.5), v(0.25, 0.5, -3.0)] {
-            let mut scene = Scene { planes: planes.clone(), ..scene() };
+            let mut scene = with(bounded(), planes.clone());
             scene.camera = camera(eye, v(0.0, 0.5, 0.0));
             let corners =
                 [v(0.0, 5.0, 0.0), v(5.0, 0.5, -1.0), v(-5.0, 0.0, 1.0), v(0.5, -5.0, 0.0)];
@@ -256,41 +239,29 @@ fn planes_that_cut_each_other() {
     }
 }
 
-/// Catches a cone of which a far ray is known too well: what is small and next to a light throws a
+/// Catches a cone that is too narrow for a far ray: a small primitive next to a light throws a
 /// shadow far away, where the rays to the light begin with large numbers.
 #[test]
-fn small_things_next_to_a_light() {
+fn small_primitives_next_to_a_light() {
     for far in [10.0, 300.0, 1e4, 1e5] {
         for (distance, radius) in [(0.01, 1e-3), (0.1, 1e-3), (0.1, 0.01), (1.0, 1e-4)] {
             let toward = v(0.3, -0.2, 1.0).normalize();
             let center = distance * toward;
             let corners = [v(1.0, 0.0, 0.0), v(-0.5, 0.8, 0.1), v(-0.5, -0.8, -0.1)];
-            let nothing = Scene {
-                planes: vec![plane(far * toward, toward)],
-                spheres: vec![],
-                triangles: vec![],
-                cylinders: vec![],
-                lights: vec![light(DVec3::ZERO)],
-                ..scene()
-            };
-            let things = [
-                Scene { spheres: vec![sphere(center, radius)], ..nothing.clone() },
-                Scene {
-                    triangles: vec![triangle(corners.map(|c| center + radius * c))],
-                    ..nothing.clone()
-                },
-                Scene {
-                    cylinders: vec![cylinder(center - radius * DVec3::Y, 2.0 * radius, radius)],
-                    ..nothing
-                },
+            let all = [
+                sphere(center, radius),
+                triangle(corners.map(|c| center + radius * c)),
+                cylinder(center - radius * DVec3::Y, 2.0 * radius, radius),
             ];
-            for (i, mut scene) in things.into_iter().enumerate() {
+            for (i, small) in all.into_iter().enumerate() {
+                let mut scene = with(bare(), [plane(far * toward, toward), small]);
+                scene.lights = vec![light(DVec3::ZERO)];
                 // The whole shadow, from the side, and its edge.
                 let edge = far * (center + v(radius, 0.0, 0.0)).normalize();
                 scene.camera = camera(v(-0.2 * far, 0.1 * far, 0.0), edge);
                 for share in [3.0, 0.1] {
                     scene.camera.screen_width = share * radius / distance;
-                    let name = format!("thing {i}, {distance} away, {radius} large, at {far}");
+                    let name = format!("primitive {i}, {distance} away, {radius} large, at {far}");
                     assert_agrees_everywhere(&scene, &name);
                 }
             }
@@ -299,9 +270,9 @@ fn small_things_next_to_a_light() {
 }
 
 /// Catches a lane that takes a NaN or an infinity another way than a single ray does: rays along an
-/// axis, a cylinder's axis and wall, in a triangle's plane and in a plane, through corners.
+/// axis, along a cylinder's axis and wall, in a triangle's plane, in a plane, and through corners.
 #[test]
-fn rays_along_things() {
+fn rays_along_primitives() {
     for (from, to) in [
         (v(-2.0, 5.0, -1.0), v(-2.0, 0.0, -1.0)),
         (v(-2.0, -5.0, -1.0), v(-2.0, 0.0, -1.0)),
@@ -314,36 +285,27 @@ fn rays_along_things() {
         (v(0.0, 5.0, 0.0), v(0.0, 0.0, 0.0)),
     ] {
         for thin in [1.5, 1e-3, 1e-20] {
-            let mut scene = scene();
+            // Two triangles, upright and lying, as the axes are.
+            let upright = [v(-2.0, 0.0, -1.0), v(0.0, 0.0, -1.0), v(-2.0, 3.0, -1.0)];
+            let lying = [v(-3.0, 1.0, -3.0), v(3.0, 1.0, -3.0), v(0.0, 1.0, 3.0)];
+            let across = plane(v(0.0, 0.0, 1.0), DVec3::Z);
+            let mut scene = with(scene(), [across, triangle(upright), triangle(lying)]);
             scene.camera = camera(from, to);
             // All rays of an image this narrow are parallel.
             scene.camera.screen_width = thin;
-            scene.planes.push(plane(v(0.0, 0.0, 1.0), DVec3::Z));
-            // Upright and lying, as the axes are.
-            scene.triangles.push(triangle([
-                v(-2.0, 0.0, -1.0),
-                v(0.0, 0.0, -1.0),
-                v(-2.0, 3.0, -1.0),
-            ]));
-            scene.triangles.push(triangle([
-                v(-3.0, 1.0, -3.0),
-                v(3.0, 1.0, -3.0),
-                v(0.0, 1.0, 3.0),
-            ]));
             assert_agrees_everywhere(&scene, &format!("from {from} to {to}, {thin} wide"));
             // The boxes of a BVH as well.
-            let copies = (0..12).map(|i| sphere(v(-1.0, 0.0, f64::from(i)), 1.0));
-            scene.spheres.extend(copies);
-            assert_agrees_everywhere(&scene, &format!("a tree, from {from} to {to}, {thin} wide"));
+            let scene = with(scene, (0..12).map(|i| sphere(v(-1.0, 0.0, f64::from(i)), 1.0)));
+            assert_agrees_everywhere(&scene, &format!("a BVH, from {from} to {to}, {thin} wide"));
         }
     }
 }
 
-/// Catches cones around another point than the eye's image: small things far away, seen in floors
-/// and tilted mirrors near the eye and far from it, and mirrors whose normal is so long or short
-/// that its square is no number.
+/// Catches cones around another point than the eye's image: small primitives far away, seen in
+/// floors and tilted mirrors near the eye and far from it, and mirrors whose normal is so long or
+/// short that its square is no number.
 #[test]
-fn small_things_in_mirrors() {
+fn small_primitives_in_mirrors() {
     for (i, (point, normal)) in [
         (v(0.0, -1.0, 0.0), DVec3::Y),
         (v(0.0, -1.0, 40.0), v(0.3, 1.0, -0.9)),
@@ -353,21 +315,17 @@ fn small_things_in_mirrors() {
     .into_iter()
     .enumerate()
     {
-        let mut scene = scene();
-        for step in 0..6 {
-            let along = f64::from(step);
-            scene
-                .spheres
-                .push(sphere(v(along - 2.0, 0.4 * along, -2.0 - 3.0 * along), 0.05 + 0.2 * along));
-            scene.triangles.push(triangle([
-                v(along - 3.0, 1.0, 3.0 - 5.0 * along),
-                v(along - 2.6, 1.0, 3.0 - 5.0 * along),
-                v(along - 3.0, 1.7, 3.0 - 5.0 * along),
-            ]));
-            scene.cylinders.push(cylinder(v(along, 0.2, -3.0 - 4.0 * along), 0.3, 0.1));
-        }
+        let small = (0..6).map(f64::from).flat_map(|along| {
+            let corner = v(along - 3.0, 1.0, 3.0 - 5.0 * along);
+            [
+                sphere(v(along - 2.0, 0.4 * along, -2.0 - 3.0 * along), 0.05 + 0.2 * along),
+                triangle([corner, v(along - 2.6, corner.y, corner.z), v(corner.x, 1.7, corner.z)]),
+                cylinder(v(along, 0.2, -3.0 - 4.0 * along), 0.3, 0.1),
+            ]
+        });
+        let scene = with(bounded(), small);
         for length in [1.0, 1e200, 1e-158, 1e-200] {
-            scene.planes = vec![plane(point, normal * length)];
+            let scene = with(scene.clone(), [plane(point, normal * length)]);
             assert_agrees_everywhere(&scene, &format!("mirror {i}, its normal {length:e} long"));
         }
     }
@@ -375,7 +333,7 @@ fn small_things_in_mirrors() {
 
 // Scenes of whole numbers
 
-/// Few values, so that things meet, touch and lie in each other's planes.
+/// Few values, so that primitives meet, touch and lie in each other's planes.
 fn place() -> impl Strategy<Value = DVec3> {
     let coordinate = || (-6..=6i32).prop_map(|k| f64::from(k) / 2.0);
     [coordinate(), coordinate(), coordinate()].prop_map(DVec3::from_array)
@@ -392,32 +350,22 @@ fn normal() -> impl Strategy<Value = DVec3> {
 
 fn on_the_grid() -> impl Strategy<Value = Scene> {
     let size = || (1..=6u32).prop_map(|k| f64::from(k) / 2.0);
-    let planes = vec((place(), normal(), 0..4usize), 0..4);
-    let spheres = vec((place(), size(), 0..4usize), 0..4);
-    let triangles = vec(([place(), place(), place()], 0..4usize), 0..4);
-    let cylinders = vec((place(), size(), size(), 0..4usize), 0..3);
+    let planes = vec((place(), normal(), 0..4usize).prop_map(|(p, n, m)| plane(p, n).of(m)), 0..4);
+    let sphere = (place(), size(), 0..4usize).prop_map(|(c, r, m)| scenes::sphere(c, r).of(m));
+    let triangle = ([place(), place(), place()], 0..4usize)
+        .prop_map(|(corners, m)| scenes::triangle(corners).of(m));
+    let cylinder = (place(), size(), size(), 0..4usize)
+        .prop_map(|(bottom, height, r, m)| scenes::cylinder(bottom, height, r).of(m));
+    let primitives = (planes, vec(sphere, 0..4), vec(triangle, 0..4), vec(cylinder, 0..3));
     let view = (place(), place(), prop_oneof![Just(1.5), Just(0.3), Just(6.0)]);
-    (planes, spheres, triangles, cylinders, vec(place(), 1..4), view).prop_map(
-        |(planes, spheres, triangles, cylinders, lights, (eye, target, screen_width))| Scene {
-            camera: Camera { screen_width, ..camera(eye, target) },
-            lights: lights.into_iter().map(light).collect(),
-            planes: planes
-                .into_iter()
-                .map(|(point, normal, material)| Plane { point, normal, material })
-                .collect(),
-            spheres: (spheres.into_iter())
-                .map(|(center, radius, material)| Sphere { center, radius, material })
-                .collect(),
-            triangles: (triangles.into_iter())
-                .map(|(vertices, material)| Triangle { vertices, material })
-                .collect(),
-            cylinders: (cylinders.into_iter())
-                .map(|(bottom, height, radius, material)| Cylinder {
-                    material,
-                    ..cylinder(bottom, height, radius)
-                })
-                .collect(),
-            ..scene()
+    (primitives, vec(place(), 1..4), view).prop_map(
+        |((planes, spheres, triangles, cylinders), lights, (eye, target, screen_width))| {
+            let scene = Scene {
+                camera: Camera { screen_width, ..camera(eye, target) },
+                lights: lights.into_iter().map(light).collect(),
+                ..bare()
+            };
+            with(scene, [planes, spheres, triangles, cylinders].concat())
         },
     )
 }
@@ -431,7 +379,7 @@ proptest! {
         ..ProptestConfig::default()
     })]
 
-    /// Catches all of this in whatever comes together by chance.
+    /// Catches all of this in scenes drawn by chance.
     #[test]
     fn scenes_on_a_grid(
         mut scene in on_the_grid(),

@@ -1,5 +1,5 @@
-//! How an image is computed changes no bit of it: rays one by one or in packets, samples of each
-//! pixel's own or shared, everything tried or only what may be met, in tiles of whatever size.
+//! The execution changes no bit of an image: rays one by one or in packets, samples of each pixel's
+//! own or shared, all primitives or only candidates tried, in tiles of any size.
 
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -19,7 +19,7 @@ const ARITHMETICS: [Arithmetic; 4] = [
 /// The whole image as one tile, tiles that packets and strips do not fit, and single pixels.
 const TILES: [u32; 3] = [1000, 7, 1];
 
-/// Every execution in every cut gives the bits of the plain one, pixel by pixel.
+/// Asserts that every execution, in tiles of every size, gives the bits of the plain one.
 fn executions_agree(scene: &Scene, size: (u32, u32), arithmetic: Arithmetic, name: &str) {
     let scene = &scene.with_arithmetic(arithmetic);
     let right = in_tiles(scene, size, plain(), 1);
@@ -47,7 +47,7 @@ fn the_repository_s_scenes() {
     }
 }
 
-/// Catches the same at the size of a strategy's tile and more: many strips, many batches.
+/// Catches the same in an image larger than a strategy's tile: many strips, many batches.
 #[test]
 fn a_larger_image() {
     let mut scene = scenes::named("report");
@@ -84,8 +84,8 @@ fn adaptive_samples() {
     }
 }
 
-/// Catches points that are interpolated across an edge, a shadow's or a mirror's, and none that are
-/// at all.
+/// Catches points that are interpolated across the edge of a surface, a shadow or a mirror image,
+/// and interpolation that never happens.
 #[test]
 fn adaptive_samples_are_near_the_lattice() {
     let mut scene = scenes::named("room").with_arithmetic(ARITHMETICS[0]);
@@ -97,7 +97,7 @@ fn adaptive_samples_are_near_the_lattice() {
     let psnr = ImageDifference::between(&full, &found).psnr();
     assert!(psnr >= 50.0, "{psnr} dB");
     assert!(found != full, "nothing is interpolated");
-    // What is the same everywhere is interpolated without an error.
+    // A constant image is interpolated without an error.
     let empty =
         Scene { planes: vec![], spheres: vec![], triangles: vec![], cylinders: vec![], ..scene };
     let image = in_tiles(&empty, (20, 20), execution, 7);
@@ -115,19 +115,14 @@ fn small_and_narrow_images() {
         (scene.render.antialiasing, scene.render.adaptive) = (antialiasing, adaptive);
         for size in [(1, 1), (2, 1), (1, 2), (3, 5), (1, 40), (40, 1)] {
             for arithmetic in &ARITHMETICS[..2] {
-                executions_agree(
-                    &scene,
-                    size,
-                    *arithmetic,
-                    &format!("{size:?} with {antialiasing}"),
-                );
+                let name = format!("{size:?} with {antialiasing}");
+                executions_agree(&scene, size, *arithmetic, &name);
             }
         }
     }
 }
 
-/// Catches samples that are lost where those of one pixel, or of a few, are more than are traced
-/// together.
+/// Catches samples that are lost where one pixel, or a few, have more than are traced together.
 #[test]
 fn many_samples_a_pixel() {
     let mut scene = scenes::named("report");
@@ -164,7 +159,7 @@ proptest! {
         ..ProptestConfig::default()
     })]
 
-    /// Catches the same in whatever a scene can have: any execution, any cut.
+    /// Catches the same in scenes that use everything, in any execution and any tiles.
     #[test]
     fn random_scenes(
         seed in 0..1_000_000u64,

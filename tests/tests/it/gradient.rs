@@ -1,4 +1,4 @@
-//! A work that strategies are tried with, and how.
+//! A work to try strategies with, and its plans.
 
 use rayweave_contract::{Rgb, Tile, Work};
 use std::num::{NonZeroU32, NonZeroUsize};
@@ -23,7 +23,7 @@ impl Work for Gradient {
     }
 }
 
-/// Work with a fault at one pixel.
+/// A work that panics at one pixel.
 pub(crate) struct Panics<W> {
     pub(crate) work: W,
     pub(crate) x: u32,
@@ -40,7 +40,7 @@ impl<W: Work> Work for Panics<W> {
     }
 }
 
-/// For a busy machine: nobody waits so long who has the threads.
+/// A timeout for a busy machine. A strategy that has its threads never waits so long.
 pub(crate) const PATIENCE: Duration = Duration::from_secs(60);
 
 pub(crate) fn threads(count: usize) -> NonZeroUsize {

@@ -1,20 +1,20 @@
-//! The scenes that are hard for arithmetic, and the report's at every scale and place: each is
-//! drawn right in the precision that is chosen for it.
+//! The scenes that are hard for arithmetic, and the report's at every scale and place, are rendered
+//! right in the precision that is chosen for each.
 
 use glam::DVec3;
 use rayweave_contract::Image;
 use rayweave_core::precision::PrecisionEstimate;
 use rayweave_core::{Precision, Scene};
 use rayweave_tests::transform::{enlarged, moved};
-use rayweave_tests::{image, metrics, model, scenes};
+use rayweave_tests::{image, model, scenes};
 
-/// What must hold for the image of a scene in `scenes/hard`.
+/// The goal for a scene in `scenes/hard`.
 struct Goal {
-    /// The file, without the ending.
+    /// The name of the file, without the ending.
     name: &'static str,
-    /// What is chosen for it.
+    /// The precision that is chosen for the scene.
     precision: Precision,
-    /// Whether only a leak may be green.
+    /// True if a green pixel is a leak.
     closed: bool,
 }
 
@@ -22,7 +22,7 @@ const fn goal(name: &'static str, precision: Precision) -> Goal {
     Goal { name, precision, closed: false }
 }
 
-/// In the order of the names.
+/// All goals, in the order of the names.
 const GOALS: [Goal; 11] = [
     Goal { closed: true, ..goal("fan", Precision::F32) },
     goal("globe", Precision::F64),
@@ -37,8 +37,8 @@ const GOALS: [Goal; 11] = [
     goal("telephoto", Precision::F64),
 ];
 
-/// PSNR in dB, at least, against `f64` and against the model: a mean error of a quarter of a step
-/// of 8 bits.
+/// The least PSNR in dB against `f64` and against the model: a mean error of a quarter of a step of
+/// 8 bits.
 const ALIKE: f64 = 60.0;
 
 /// An image in the chosen precision, in `f64` and of the model.
@@ -64,14 +64,14 @@ impl Drawn {
         Self { width, precision, chosen, wide, truth: model::render(&scene, width, height) }
     }
 
-    /// PSNR of the chosen image against that in `f64`, and against the model.
+    /// The PSNR of the chosen image against that in `f64`, and against the model.
     fn agreement(&self) -> [f64; 2] {
         let wide: Vec<_> = self.wide.pixels().iter().map(|color| color.map(f64::from)).collect();
-        [&wide, &self.truth].map(|truth| metrics::psnr(truth, &self.chosen))
+        [&wide, &self.truth].map(|truth| image::psnr(truth, &self.chosen))
     }
 
-    /// Pixels that are plainly wrong amid others that are all alike in the model: no outline, no
-    /// edge of a shadow excuses them.
+    /// Lists the pixels that are plainly wrong amid others that are all alike in the model, where
+    /// no outline and no edge of a shadow explains them.
     fn acne(&self) -> Vec<(u32, u32)> {
         let (width, height) =
             (self.width as usize, self.chosen.pixels().len() / self.width as usize);
@@ -102,7 +102,7 @@ impl Drawn {
     }
 }
 
-/// Nothing that is hidden behind triangles, all of it green, is seen.
+/// Asserts that nothing behind the triangles is visible: all of it is green.
 #[track_caller]
 fn assert_closed(what: &str, scene: &Scene) {
     let mut scene = scene.clone();
@@ -115,16 +115,16 @@ fn assert_closed(what: &str, scene: &Scene) {
     }
 }
 
-/// Catches a scene that nobody states a goal for, and a goal without its scene.
+/// Catches a scene without a goal, and a goal without its scene.
 #[test]
 fn every_hard_scene_has_its_goal() {
     assert_eq!(scenes::hard(), GOALS.map(|goal| goal.name));
 }
 
-/// Catches whatever the tracer gets wrong where it is hard: a wrong choice of precision, surfaces
+/// Catches errors of the tracer where arithmetic is hard: a wrong choice of precision, surfaces
 /// that shadow or mirror themselves, edges that let light through.
 #[test]
-fn hard_scenes_are_drawn_right() {
+fn hard_scenes_are_rendered_right() {
     for Goal { name, precision, .. } in GOALS {
         let drawn = Drawn::new(&scenes::named(&format!("hard/{name}")), 160, 1);
         assert_eq!(drawn.precision, precision, "{name}");
@@ -146,13 +146,13 @@ fn hard_scenes_have_no_wrong_samples() {
             let mut scene = scene;
             scene.render.antialiasing = 0;
             let narrow = image::of_scene(&scene, 200, 150, Precision::F32);
-            let narrow = metrics::psnr(&drawn.truth, &narrow);
+            let narrow = image::psnr(&drawn.truth, &narrow);
             assert!(narrow < 66.0, "{name}: f32 would do, with {narrow:.1} dB");
         }
     }
 }
 
-/// The report's scene and the fan, in all sizes and places that are tried.
+/// Lists the report's scene and the fan, in all sizes and places that are tried.
 fn everywhere() -> Vec<(String, Scene)> {
     let mut all = Vec::new();
     for name in ["report", "hard/fan"] {

@@ -1,20 +1,21 @@
-//! The same bits from every strategy, number of threads, size of tile and size of image; and from
+//! Every strategy, number of threads, size of tile and size of image gives the same bits; so does
 //! every way of cutting an image into tiles, which is what lets strategies differ at all.
 //!
-//! `broken_strategies` shows that `check` catches what is wrong; this is the proof for the real
-//! tracer, against images that no strategy had a hand in.
+//! `broken_strategies` shows that `check` catches errors; these tests are the proof for the real
+//! tracer, against images that no strategy computed.
 
 use rayweave_contract::{Image, Plan, Rect, Rgb, Tile, Work};
-use rayweave_core::{Execution, Precision, Scene, tracer};
-use rayweave_tests::image::pixel_by_pixel;
-use rayweave_tests::{random_scene::random_scene, scenes};
+use rayweave_core::{Precision, Scene};
+use rayweave_tests::image::{self, difference, pixel_by_pixel};
+use rayweave_tests::random_scene::random_scene;
+use rayweave_tests::scenes::{self, PRECISIONS};
 use std::num::{NonZeroU32, NonZeroUsize};
 
 const THREADS: [usize; 6] = [1, 2, 3, 5, 8, 64];
 const TILES: [u32; 4] = [1, 7, 32, 1000];
 const SIZES: [(u32, u32); 5] = [(1, 1), (1, 500), (500, 1), (7, 3), (97, 61)];
-/// What no scene here is: a pixel that is left out shows it.
-const POISON: Rgb = [f32::NAN; 3];
+/// A colour that no scene here has, so that a pixel that is left out shows it.
+const SENTINEL: Rgb = [f32::NAN; 3];
 
 /// The scene of this name, at an antialiasing low enough to render it hundreds of times.
 fn scene(name: &str) -> Scene {
@@ -24,12 +25,12 @@ fn scene(name: &str) -> Scene {
 }
 
 /// Catches a strategy that leaves out, swaps or tears pixels, or keeps something of the image
-/// before: one renderer draws all sizes, one after the other.
+/// before, and work with a memory: one renderer renders all sizes, one after the other, and one
+/// work is rendered by all strategies.
 fn strategies_agree(name: &str, precision: Precision) {
     let scene = scene(name);
     let images = SIZES.map(|(width, height)| {
-        let work = tracer(&scene.with_arithmetic(precision), width, height, Execution::default())
-            .expect("a sound scene");
+        let work = image::work(&scene, (width, height), precision);
         let right = pixel_by_pixel(&*work, width, height);
         (work, right)
     });
@@ -45,9 +46,9 @@ fn strategies_agree(name: &str, precision: Precision) {
             let mut renderer = strategy.prepare(plan).expect(&context);
             for (work, right) in &images {
                 let mut found =
-                    Image::filled(right.width(), right.height(), POISON).expect("an image");
+                    Image::filled(right.width(), right.height(), SENTINEL).expect("an image");
                 renderer.render(&**work, &mut found).expect(&context);
-                assert_same(&found, right, &context);
+                assert_eq!(difference(&found, right), None, "{context}");
             }
         }
     }
@@ -59,14 +60,14 @@ fn strategies_agree_on_the_report() {
     strategies_agree("report", Precision::F32);
 }
 
-/// The same in wide numbers.
+/// Catches the same in wide numbers.
 #[test]
 fn strategies_agree_on_the_room() {
     strategies_agree("room", Precision::F64);
 }
 
-/// The same where one corner costs almost everything: threads end far apart, tiles finish out of
-/// order.
+/// Catches the same where one corner costs almost everything: threads end far apart, tiles finish
+/// out of order.
 #[test]
 fn strategies_agree_on_the_imbalance() {
     strategies_agree("imbalance", Precision::F32);
@@ -78,16 +79,15 @@ fn strategies_agree_on_the_imbalance() {
 fn a_pixel_is_the_same_in_every_tile() {
     let mut scenes: Vec<_> = scenes::NAMES.map(scene).into();
     // Denser lattices than above, odd and even, and none.
-    scenes.extend([3, 7, 11].map(random_scene));
-    for (antialiasing, scene) in [0, 2, 3].into_iter().zip(&mut scenes[3..]) {
+    scenes.extend([(0, 3), (2, 7), (3, 11)].map(|(antialiasing, seed)| {
+        let mut scene = random_scene(seed);
         scene.render.antialiasing = antialiasing;
-    }
+        scene
+    }));
     for (number, scene) in scenes.iter().enumerate() {
-        for precision in [Precision::F32, Precision::F64] {
+        for precision in PRECISIONS {
             for (width, height) in [(1, 1), (1, 50), (50, 1), (7, 3), (48, 31)] {
-                let work =
-                    tracer(&scene.with_arithmetic(precision), width, height, Execution::default())
-                        .expect("a sound scene");
+                let work = image::work(scene, (width, height), precision);
                 let context = format!("scene {number} in {precision}, {width}x{height}");
                 tilings_agree(&*work, width, height, &context);
             }
@@ -97,40 +97,28 @@ fn a_pixel_is_the_same_in_every_tile() {
 
 fn tilings_agree(work: &dyn Work, width: u32, height: u32, context: &str) {
     let right = pixel_by_pixel(work, width, height);
-    let poisoned = || Image::filled(width, height, POISON).expect("an image");
-
-    let mut by_row = poisoned();
-    for (y, row) in by_row.pixels_mut().chunks_mut(width as usize).enumerate().rev() {
-        work.render(&mut Tile::row(0, y as u32, row));
-    }
-    assert_same(&by_row, &right, &format!("{context}, by row"));
-
-    let mut by_half_row = poisoned();
-    for (y, row) in (0..).zip(by_half_row.pixels_mut().chunks_mut(width as usize)) {
-        let (left, rest) = row.split_at_mut(width as usize / 2);
-        work.render(&mut Tile::row(width / 2, y, rest));
-        work.render(&mut Tile::row(0, y, left));
-    }
-    assert_same(&by_half_row, &right, &format!("{context}, by half a row"));
-
+    let agrees = |how: &str, render: &dyn Fn(&mut Image)| {
+        let mut found = Image::filled(width, height, SENTINEL).expect("an image");
+        render(&mut found);
+        assert_eq!(difference(&found, &right), None, "{context}, {how}");
+    };
+    agrees("by row", &|image| {
+        let rows = image.pixels_mut().chunks_mut(width as usize).enumerate();
+        rows.rev().for_each(|(y, row)| work.render(&mut Tile::row(0, y as u32, row)));
+    });
+    agrees("by half a row", &|image| {
+        for (y, row) in (0..).zip(image.pixels_mut().chunks_mut(width as usize)) {
+            let (left, rest) = row.split_at_mut(width as usize / 2);
+            work.render(&mut Tile::row(width / 2, y, rest));
+            work.render(&mut Tile::row(0, y, left));
+        }
+    });
     // From one pixel to the whole image.
     for side in [1, 2, 3, 5, 8, 16, 1000] {
-        let mut tiled = poisoned();
-        let tiles = tiled.tiles(NonZeroU32::new(side).expect("not 0"));
-        tiles.into_iter().rev().for_each(|mut tile| work.render(&mut tile));
-        assert_same(&tiled, &right, &format!("{context}, tiles of {side}"));
-    }
-}
-
-/// Catches work with a memory: a cache that a second rendering finds changed.
-#[test]
-fn a_pixel_is_the_same_every_time() {
-    for name in scenes::NAMES {
-        let work =
-            tracer(&scene(name).with_arithmetic(Precision::F32), 20, 15, Execution::default())
-                .expect("a sound scene");
-        let first = pixel_by_pixel(&*work, 20, 15);
-        assert_same(&pixel_by_pixel(&*work, 20, 15), &first, name);
+        agrees(&format!("tiles of {side}"), &|image| {
+            let tiles = image.tiles(NonZeroU32::new(side).expect("not 0"));
+            tiles.into_iter().rev().for_each(|mut tile| work.render(&mut tile));
+        });
     }
 }
 
@@ -153,29 +141,13 @@ fn tiles_are_where_they_say() {
             assert_eq!(rows, height);
         }
     }
-    for (width, height) in SIZES {
-        for tile in TILES {
-            let mut image = Image::new(width, height).expect("an image");
-            let tiles = image.tiles(NonZeroU32::new(tile).expect("not 0"));
-            tiles.into_iter().for_each(|mut tile| Place.render(&mut tile));
-            for (index, color) in image.pixels().iter().enumerate() {
-                let (x, y) = image.position(index);
-                assert_eq!(*color, [x as f32, y as f32, 1.0], "{width}x{height}, tiles of {tile}");
-            }
+    for ((width, height), tile) in SIZES.into_iter().flat_map(|size| TILES.map(|t| (size, t))) {
+        let mut image = Image::new(width, height).expect("an image");
+        let tiles = image.tiles(NonZeroU32::new(tile).expect("not 0"));
+        tiles.into_iter().for_each(|mut tile| Place.render(&mut tile));
+        for (index, color) in image.pixels().iter().enumerate() {
+            let (x, y) = image.position(index);
+            assert_eq!(*color, [x as f32, y as f32, 1.0], "{width}x{height}, tiles of {tile}");
         }
-    }
-}
-
-#[track_caller]
-fn assert_same(found: &Image, right: &Image, context: &str) {
-    let bits = |color: &Rgb| color.map(f32::to_bits);
-    let pairs = found.pixels().iter().zip(right.pixels()).enumerate();
-    let different: Vec<_> =
-        pairs.filter(|(_, (found, right))| bits(found) != bits(right)).collect();
-    if let Some((index, (found, expected))) = different.first() {
-        let (count, position) = (different.len(), right.position(*index));
-        panic!(
-            "{context}: {count} pixels differ, the first at {position:?}: {found:?}, not {expected:?}"
-        );
     }
 }

@@ -1,11 +1,11 @@
-//! What an image does not depend on: the unit of length, and which hand is the right one. Neither
-//! change rounds anything, so that not a bit of the image may change.
+//! An image depends neither on the unit of length nor on the handedness of the axes. Neither change
+//! rounds anything, so that not a bit of the image may change.
 
 use rayweave_contract::Image;
 use rayweave_core::{Precision, Scene};
 use rayweave_tests::image::of_scene;
 use rayweave_tests::random_scene::random_scene;
-use rayweave_tests::scenes;
+use rayweave_tests::scenes::{self, PRECISIONS};
 use rayweave_tests::transform::{enlarged, mirrored};
 
 const WIDTH: u32 = 33;
@@ -15,12 +15,12 @@ fn all() -> impl Iterator<Item = (String, Scene, Precision)> {
     let named = scenes::NAMES.map(|name| (name.to_owned(), scenes::named(name)));
     let random = (0..30).map(|seed| (format!("random {seed}"), random_scene(seed)));
     named.into_iter().chain(random).flat_map(|(name, scene)| {
-        [Precision::F32, Precision::F64].map(|precision| (name.clone(), scene.clone(), precision))
+        PRECISIONS.map(|precision| (name.clone(), scene.clone(), precision))
     })
 }
 
 /// Catches every length that does not follow the scene's scale: an offset of 1e-3 from a surface,
-/// an epsilon, a limit on `t`; in shadows and mirrors as in the nearest hit.
+/// an epsilon, a limit on `t`; in shadows and mirrors as in the closest hit.
 #[test]
 fn the_unit_of_length_does_not_matter() {
     for (name, mut scene, precision) in all() {
@@ -43,16 +43,13 @@ fn a_mirrored_scene_is_a_mirrored_image() {
         let right = flipped(&of_scene(&scene, WIDTH, HEIGHT, precision));
         let mirrored = [mirrored::<0>(&scene), mirrored::<1>(&scene), mirrored::<2>(&scene)];
         for (axis, scene) in ["x", "y", "z"].iter().zip(&mirrored) {
-            assert_eq!(
-                of_scene(scene, WIDTH, HEIGHT, precision),
-                right,
-                "{name} in {precision}, {axis}"
-            );
+            let found = of_scene(scene, WIDTH, HEIGHT, precision);
+            assert_eq!(found, right, "{name} in {precision}, {axis}");
         }
     }
 }
 
-/// The mirror image, left for right.
+/// Exchanges left and right.
 fn flipped(image: &Image) -> Image {
     let mut flipped = image.clone();
     let width = image.width() as usize;

@@ -1,7 +1,8 @@
-//! One program of all tests here: each more would be linked anew.
+//! All tests of this folder in one program, which is linked once.
 
 mod acne;
 mod agreement;
+mod arbitrary;
 mod boundaries;
 mod broken_strategies;
 mod bvh;

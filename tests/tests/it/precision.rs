@@ -1,48 +1,43 @@
-//! Which precision a scene is given, and that it is enough.
+//! The precision chosen for a scene is right, and it is enough.
 
-use glam::DVec3;
+use glam::{DVec3, dvec3 as v};
 use rayweave_core::precision::{F32_DISPLACEMENT, F32_MIRRORS, PrecisionEstimate};
-use rayweave_core::scene::{Cylinder, Material, Plane, Sphere, Triangle};
+use rayweave_core::scene::Material;
 use rayweave_core::{Lanes, Precision, Scene};
+use rayweave_tests::model::{self, Primitive};
+use rayweave_tests::scenes::{cylinder, empty, named, plane, sphere, triangle, with};
 use rayweave_tests::transform::{enlarged, moved};
-use rayweave_tests::{image, metrics, model, scenes};
+use rayweave_tests::{image, scenes};
 
 fn chosen(scene: &Scene) -> Precision {
     PrecisionEstimate::of(scene).precision()
 }
 
-/// Nothing at all, seen from the origin.
-fn empty() -> Scene {
-    let mut scene = scenes::empty();
+/// A scene of these primitives, without a light, seen from `eye`.
+fn seen_from(eye: DVec3, primitives: &[Primitive]) -> Scene {
+    let mut scene = with(empty(), primitives.iter().copied());
     scene.lights.clear();
-    scene.camera.position = DVec3::ZERO;
+    scene.camera.position = eye;
     scene
 }
 
-fn ball(center: [f64; 3], radius: f64) -> Scene {
-    let sphere = Sphere { center: DVec3::from_array(center), radius, material: 0 };
-    Scene { spheres: vec![sphere], ..empty() }
-}
-
-/// The report's scene on a sphere as large as this instead of its floor.
+/// The report's scene on a sphere of this radius instead of its floor.
 fn on_a_globe(radius: f64) -> Scene {
-    let mut scene = scenes::named("report");
+    let mut scene = named("report");
     let floor = scene.planes.remove(0);
-    let center = floor.point - radius * DVec3::Y;
-    scene.spheres.push(Sphere { center, radius, material: floor.material });
-    scene
+    with(scene, [sphere(floor.point - radius * DVec3::Y, radius).of(floor.material)])
 }
 
-/// Seen through a lens that shows an image as wide as it is far away.
+/// The scene through a lens that shows an image as wide as it is far away.
 fn through_a_lens(focal_length: f64, mut scene: Scene) -> Scene {
     scene.camera.focal_length = focal_length;
     scene.camera.screen_width = 1.0;
     scene
 }
 
-/// The report's scene from as far as this, through a lens that brings it as near as ever.
+/// The report's scene from this distance, through a lens that makes it as large as ever.
 fn from_afar(distance: f64) -> Scene {
-    let mut scene = scenes::named("hard/telephoto");
+    let mut scene = named("hard/telephoto");
     let camera = &mut scene.camera;
     camera.position = camera.look_at + distance * (camera.position - camera.look_at).normalize();
     camera.focal_length = distance;
@@ -52,79 +47,42 @@ fn from_afar(distance: f64) -> Scene {
 // The rule
 
 /// Catches a kind that does not count, a coordinate left out or taken with its sign, a radius
-/// forgotten in the extent, a distance to the wrong point of a thing.
+/// forgotten in the extent, a distance to the wrong point of a primitive.
 #[test]
-fn every_kind_makes_its_demand() {
-    let plane =
-        |point| Plane { point: DVec3::from_array(point), normal: 9.0 * DVec3::Y, material: 0 };
-    let tall = Cylinder {
-        bottom: DVec3::new(3.0, -40.0, -4.0),
-        top: DVec3::new(3.0, 3.0, -4.0),
-        radius: 0.25,
-        material: 0,
-    };
-    let low =
-        Cylinder { bottom: DVec3::new(0.0, 2.0, 0.0), top: DVec3::new(0.0, 3.0, 0.0), ..tall };
-    let corners = |y: f64| [[-3.0, y, -4.0], [6.0, y, -4.0], [-3.0, y, 4.0]].map(DVec3::from_array);
-    let triangle = |vertices| Triangle { vertices, material: 0 };
-    let aside = corners(0.0).map(|corner| corner + DVec3::new(6.0, 0.0, 0.0));
-    let mut eye = empty();
-    eye.camera.position = DVec3::new(3.0, -7.0, 5.0);
-    let of_planes = |planes| Scene { planes, ..empty() };
-    let of_triangle = |vertices| Scene { triangles: vec![triangle(vertices)], ..empty() };
-    let of_cylinder = |cylinder| Scene { cylinders: vec![cylinder], ..empty() };
-    // What is expected: 24 of what is across, one of what is along, four of the distance; the
-    // distance; the smallest number that is squared; the largest number.
-    let cases = [
-        ("nothing", empty(), 4.0, 1.0, f64::INFINITY, 1.0),
-        ("the eye", eye.clone(), 4.0, 1.0, 7.0, 7.0),
-        (
-            "a plane",
-            of_planes(vec![plane([100.0, 2.0, -8.0])]),
-            24.0 * 2.0 + 8.0,
-            2.0,
-            100.0,
-            100.0,
-        ),
-        ("a sphere", ball([-3.0, 0.0, 4.0], 0.5), 24.0 * 4.0 + 4.5 + 18.0, 4.5, 0.5, 4.5),
-        (
-            "a sphere around the eye",
-            ball([-3.0, 0.0, 4.0], 7.0),
-            24.0 * 7.0 + 11.0 + 8.0,
-            2.0,
-            7.0,
-            11.0,
-        ),
+fn every_kind_takes_digits() {
+    let across = |point| plane(point, 9.0 * DVec3::Y);
+    let tall = cylinder(v(3.0, -40.0, -4.0), 43.0, 0.25);
+    let low = cylinder(v(0.0, 2.0, 0.0), 1.0, 0.25);
+    let corners = |x: f64, y: f64| [v(x - 3.0, y, -4.0), v(x + 6.0, y, -4.0), v(x - 3.0, y, 4.0)];
+    let (zero, high) = (DVec3::ZERO, 65f64.sqrt() / 4.0);
+    let eye = v(3.0, -7.0, 5.0);
+    let around = [sphere(v(-3.0, 0.0, 4.0), 7.0)];
+    // The expected roundings are 24 of the extent across, one of that along, four of the distance.
+    // Then come the distance, the smallest number that is squared, and the largest number.
+    let cases: [(_, _, &[_], _, _, _, _); 11] = [
+        ("nothing", zero, &[], 4.0, 1.0, f64::INFINITY, 1.0),
+        ("the eye", eye, &[], 4.0, 1.0, 7.0, 7.0),
+        ("a plane", zero, &[across(v(100.0, 2.0, -8.0))], 24.0 * 2.0 + 8.0, 2.0, 100.0, 100.0),
+        ("a sphere", zero, &[sphere(v(-3.0, 0.0, 4.0), 0.5)], 96.0 + 4.5 + 18.0, 4.5, 0.5, 4.5),
+        ("a sphere around the eye", zero, &around, 24.0 * 7.0 + 11.0 + 8.0, 2.0, 7.0, 11.0),
         // Below its middle, the eye's height counts; beside it, the distance to a corner.
-        ("a triangle", of_triangle(corners(-2.0)), 24.0 * 2.0 + 6.0 + 8.0, 2.0, 6.0, 6.0),
-        ("a triangle aside", of_triangle(aside), 12.0 + 12.0, 3.0, 12.0, 12.0),
-        ("a cylinder", of_cylinder(tall), 24.0 * 4.0 + 40.25 + 19.0, 4.75, 0.25, 40.25),
-        (
-            "a cylinder above",
-            of_cylinder(low),
-            24.0 * 0.25 + 3.25 + 4.0 * 65f64.sqrt() / 4.0,
-            65f64.sqrt() / 4.0,
-            0.25,
-            3.25,
-        ),
-        (
-            "an eye far from the origin",
-            Scene { camera: eye.camera, ..ball([3.0, -7.0, 1.0], 1.0) },
-            24.0 * 7.0 + 8.0 + 12.0,
-            3.0,
-            1.0,
-            8.0,
-        ),
+        ("a triangle", zero, &[triangle(corners(0.0, -2.0))], 48.0 + 6.0 + 8.0, 2.0, 6.0, 6.0),
+        ("a triangle aside", zero, &[triangle(corners(6.0, 0.0))], 12.0 + 12.0, 3.0, 12.0, 12.0),
+        ("a cylinder", zero, &[tall], 24.0 * 4.0 + 40.25 + 19.0, 4.75, 0.25, 40.25),
+        ("a cylinder above", zero, &[low], 24.0 * 0.25 + 3.25 + 4.0 * high, high, 0.25, 3.25),
+        ("a far eye", eye, &[sphere(v(3.0, -7.0, 1.0), 1.0)], 168.0 + 8.0 + 12.0, 3.0, 1.0, 8.0),
         (
             "the worst of two",
-            Scene { cylinders: vec![tall], ..of_planes(vec![plane([0.0, -90.0, 0.0])]) },
+            zero,
+            &[across(v(0.0, -90.0, 0.0)), tall],
             24.0 * 4.0 + 40.25 + 19.0,
             4.75,
             0.25,
             90.0,
         ),
     ];
-    for (what, scene, roundings, distance, least, extreme) in cases {
+    for (what, eye, primitives, roundings, distance, least, extreme) in cases {
+        let scene = seen_from(eye, primitives);
         for focal_length in [1.0, 64.0] {
             let found = PrecisionEstimate::of(&through_a_lens(focal_length, scene.clone()));
             let displacement = focal_length * roundings / distance / 2f64.powi(24);
@@ -150,19 +108,19 @@ fn the_displacement_and_the_mirrors_decide() {
     assert_eq!(estimate(F32_DISPLACEMENT, F32_MIRRORS).precision(), Precision::F32);
     assert_eq!(estimate(F32_DISPLACEMENT * more, 0.0).precision(), Precision::F64);
     assert_eq!(estimate(0.0, F32_MIRRORS * more).precision(), Precision::F64);
-    // Packets, whatever else asks for `f64`; not between mirrors that scatter.
+    // Packets, whatever else asks for `f64`, except between mirrors that scatter.
     assert_eq!(Lanes::suggested(&estimate(F32_DISPLACEMENT * more, F32_MIRRORS)), Lanes::default());
     assert_eq!(Lanes::suggested(&estimate(0.0, F32_MIRRORS * more)), Lanes::One);
     // Planes without anything beside them have no outline: no coordinate is too large for them.
-    let floor = Plane { point: -1e8 * DVec3::Y, normal: DVec3::Y, material: 0 };
-    assert_eq!(chosen(&Scene { planes: vec![floor], ..empty() }), Precision::F32);
+    let floor = plane(-1e8 * DVec3::Y, DVec3::Y);
+    assert_eq!(chosen(&seen_from(DVec3::ZERO, &[floor])), Precision::F32);
 }
 
 /// Catches a flat mirror that counts, a curved one that does not, the wrong one of several.
 #[test]
 fn curved_mirrors_take_digits() {
     let mirrors = |reflections: [f64; 4]| {
-        let mut scene = scenes::named("report");
+        let mut scene = named("report");
         scene.materials.truncate(1);
         scene.materials =
             reflections.map(|reflection| Material { reflection, ..scene.materials[0] }).into();
@@ -191,12 +149,16 @@ fn the_range_decides() {
         (1e30, Precision::F64),
         (1e300, Precision::F64),
     ] {
-        assert_eq!(chosen(&ball([0.0; 3], radius)), expected, "{radius:e}");
+        assert_eq!(
+            chosen(&seen_from(DVec3::ZERO, &[sphere(DVec3::ZERO, radius)])),
+            expected,
+            "{radius:e}"
+        );
     }
 }
 
-/// Catches a number that is multiplied but not looked at: a light may be far beyond everything seen
-/// and take no digit from it, but not so far that `f32` cannot square it.
+/// Catches a number that is multiplied but not looked at. A light may be far beyond everything
+/// visible and take no digit from it, but not so far that `f32` cannot square it.
 #[test]
 fn lights_and_materials_count_by_their_range() {
     type Change = fn(&mut Scene, f64);
@@ -211,7 +173,7 @@ fn lights_and_materials_count_by_their_range() {
         for (x, expected) in
             [(1e8, Precision::F32), (1e10, Precision::F64), (1e300, Precision::F64)]
         {
-            let mut scene = scenes::named("report");
+            let mut scene = named("report");
             change(&mut scene, x);
             assert_eq!(chosen(&scene), expected, "{what} of {x:e}");
         }
@@ -220,18 +182,18 @@ fn lights_and_materials_count_by_their_range() {
 
 /// Catches a rule that asks too much, or too little of mirrors.
 #[test]
-fn of_the_repository_s_scenes_only_the_chaotic_one_chooses_f64() {
+fn only_the_chaotic_scene_of_the_repository_chooses_f64() {
     for name in scenes::NAMES {
         let expected = if name == "imbalance" { Precision::F64 } else { Precision::F32 };
-        assert_eq!(chosen(&scenes::named(name)), expected, "{name}");
+        assert_eq!(chosen(&named(name)), expected, "{name}");
     }
 }
 
-/// Catches a bound on the coordinates themselves where they are compared with what is seen, and the
-/// reverse.
+/// Catches a bound on the coordinates themselves where they are compared with the visible part of
+/// the scene, and the reverse.
 #[test]
-fn what_is_far_or_large_beside_the_small_chooses_f64() {
-    let report = scenes::named("report");
+fn far_or_large_beside_small_chooses_f64() {
+    let report = named("report");
     // All numbers grow alike: `f32` loses nothing.
     assert_eq!(chosen(&enlarged(&report, 1e5)), Precision::F32);
     assert_eq!(chosen(&enlarged(&report, 1e-5)), Precision::F32);
@@ -253,11 +215,11 @@ fn what_is_far_or_large_beside_the_small_chooses_f64() {
 /// Catches a reason that does not name what decides, or is not a number.
 #[test]
 fn the_reason_is_one_line_about_what_decides() {
-    let report = scenes::named("report");
+    let report = named("report");
     for (scene, word) in [
         (&report, "of the picture's width"),
         (&moved(&report, DVec3::splat(1e5)), "of the picture's width"),
-        (&scenes::named("imbalance"), "mirrors"),
+        (&named("imbalance"), "mirrors"),
         (&enlarged(&report, 1e30), "numbers from"),
     ] {
         let reason = PrecisionEstimate::of(scene).to_string();
@@ -265,22 +227,22 @@ fn the_reason_is_one_line_about_what_decides() {
     }
 }
 
-// Whether it is enough
+// The choice is enough
 
 const WIDTH: u32 = 60;
 const HEIGHT: u32 = 45;
 
-/// PSNR in `f32` and `f64`.
+/// The PSNR against the model in `f32` and `f64`.
 fn agreement(scene: &Scene) -> [f64; 2] {
     let mut scene = scene.clone();
     scene.render.antialiasing = 1;
     let truth = model::render(&scene, WIDTH, HEIGHT);
     [Precision::F32, Precision::F64]
-        .map(|precision| metrics::psnr(&truth, &image::of_scene(&scene, WIDTH, HEIGHT, precision)))
+        .map(|precision| image::psnr(&truth, &image::of_scene(&scene, WIDTH, HEIGHT, precision)))
 }
 
-/// What the chosen precision has to reach. Above 60 dB a single sample decides, here one that
-/// meets an edge and may fall to either side: no precision is better than another there.
+/// The PSNR that the chosen precision has to reach. Above 60 dB a single sample decides, here one
+/// that meets an edge and may fall to either side: no precision is better than another there.
 const ENOUGH: f64 = 50.0;
 
 #[track_caller]
@@ -290,7 +252,7 @@ fn assert_enough(what: &str, scene: &Scene) {
     let chosen = if precision == Precision::F32 { narrow } else { wide };
     let found = format!("{what}: {precision} of {narrow:.1} dB in f32, {wide:.1} dB in f64");
     assert!(chosen >= ENOUGH, "{found}");
-    // The cheaper one may be a little worse, the dearer one not at all.
+    // `f32` may be a little worse, `f64` not at all.
     assert!(precision == Precision::F32 || wide >= narrow.min(ENOUGH), "{found}");
 }
 
@@ -298,7 +260,7 @@ fn assert_enough(what: &str, scene: &Scene) {
 #[test]
 fn the_chosen_precision_is_enough() {
     for name in scenes::NAMES {
-        let scene = scenes::named(name);
+        let scene = named(name);
         for scale in [1e-25, 1e-12, 1e-5, 1.0, 1e5, 1e9, 1e12, 1e25] {
             assert_enough(&format!("{name}, {scale:e} times as large"), &enlarged(&scene, scale));
         }
@@ -320,7 +282,7 @@ fn the_chosen_precision_is_enough() {
 /// Catches a rule that chooses `f64` for nothing: these are wrong in `f32`.
 #[test]
 fn f64_is_chosen_for_a_reason() {
-    let report = scenes::named("report");
+    let report = named("report");
     for (what, scene) in [
         ("far", moved(&report, DVec3::splat(1e5))),
         ("on a globe", on_a_globe(1e6)),
@@ -340,7 +302,7 @@ fn f64_is_chosen_for_a_reason() {
 /// the light vanish in `f32`.
 #[test]
 fn a_floor_alone_may_be_minute() {
-    let mut scene = scenes::named("report");
+    let mut scene = named("report");
     scene.spheres.clear();
     scene.triangles.clear();
     scene.cylinders.clear();
@@ -353,7 +315,7 @@ fn a_floor_alone_may_be_minute() {
 #[test]
 fn a_light_may_be_very_far() {
     for distance in [1e6, 1e18, 1e20, 1e30, 1e100] {
-        let mut scene = scenes::named("report");
+        let mut scene = named("report");
         scene.lights[0].position = distance * DVec3::new(-0.5, 1.0, 0.7);
         assert_enough(&format!("a light {distance:e} away"), &scene);
     }
@@ -364,7 +326,7 @@ fn a_light_may_be_very_far() {
 #[test]
 fn a_screen_may_be_very_small_or_large() {
     for scale in [1e-60, 1e-30, 1e-10, 1e10, 1e30, 1e60] {
-        let mut scene = scenes::named("report");
+        let mut scene = named("report");
         scene.camera.focal_length *= scale;
         scene.camera.screen_width *= scale;
         assert_enough(&format!("a screen {scale:e} times as large"), &scene);

@@ -1,4 +1,4 @@
-//! Strategies have to pass every check, and to survive work that panics.
+//! The strategies of the registry pass every check, and survive work that panics.
 
 use crate::gradient::{Gradient, PATIENCE, Panics, threads, tile};
 use rayweave_contract::{Image, Plan, Strategy, StrategyError, Threads, Tile, Work};
@@ -12,6 +12,7 @@ use std::time::Duration;
 
 const THREADS: [usize; 6] = [1, 2, 3, 5, 8, 64];
 
+/// Catches a check that finds faults in sound strategies, and progress that is not counted right.
 #[test]
 fn the_real_strategies_agree() {
     let sizes = [(1, 1), (1, 500), (500, 1), (7, 3), (97, 61)];
@@ -44,6 +45,7 @@ fn the_real_strategies_agree() {
     assert_eq!(verdict.compared, told);
 }
 
+/// Catches a strategy that hangs, aborts, names the wrong tile or is not usable after a panic.
 #[test]
 fn the_real_strategies_survive_work_that_panics() {
     let (done, finished) = mpsc::channel();
@@ -84,8 +86,9 @@ fn survives(strategy: &dyn Strategy, threads: NonZeroUsize) {
     }
 }
 
+/// Catches a strategy that hangs where every tile panics.
 #[test]
-fn all_at_once_panics_end_too() {
+fn work_that_always_panics_ends() {
     struct AlwaysPanics;
     impl Work for AlwaysPanics {
         fn render(&self, _: &mut Tile<'_>) {

@@ -1,60 +1,26 @@
-//! The textbook's formulas are right, if inexact: nobody would be helped by a comparison with wrong
-//! ones.
+//! The textbook's formulas are right, if inexact: a comparison with wrong formulas says nothing.
 
-use glam::DVec3;
-use rayweave_core::scene::{Cylinder, Plane, Sphere, Triangle};
-use rayweave_core::{Arithmetic, Caster, Execution, Formulas, Precision, Scene, tracer};
+use glam::{DVec3, dvec3 as v};
+use rayweave_core::{Arithmetic, Formulas, Precision, Scene};
 use rayweave_measure::random::SplitMix64;
-use rayweave_tests::scenes::empty;
-use rayweave_tests::{image, metrics, model, random_scene::random_scene};
+use rayweave_tests::random_scene::random_scene;
+use rayweave_tests::scenes::{caster, cylinder, of, plane, sphere, triangle, with};
+use rayweave_tests::{image, model};
 
 const TEXTBOOK: Arithmetic = Arithmetic { formulas: Formulas::Textbook, precision: Precision::F64 };
 
-fn v(x: f64, y: f64, z: f64) -> DVec3 {
-    DVec3::new(x, y, z)
-}
-
 fn t(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<f64> {
-    Caster::new(&scene.with_arithmetic(TEXTBOOK))
-        .expect("a sound scene")
-        .closest_hit(origin, direction)
-        .map(|hit| hit.t)
+    caster(scene, TEXTBOOK).closest_hit(origin, direction).map(|hit| hit.t)
 }
 
-/// One thing of each kind, each across -z at a distance of `z` from 0.
+/// One primitive of each kind, each across -z at a distance of `z` from 0.
 fn ahead(z: f64) -> [(&'static str, Scene); 4] {
     let corners = [v(-1.0, -1.0, -z), v(1.0, -1.0, -z), v(0.0, 1.0, -z)];
     [
-        (
-            "plane",
-            Scene {
-                planes: vec![Plane { point: v(0.0, 0.0, -z), normal: DVec3::Z, material: 0 }],
-                ..empty()
-            },
-        ),
-        (
-            "sphere",
-            Scene {
-                spheres: vec![Sphere { center: v(0.0, 0.0, -z - 1.0), radius: 1.0, material: 0 }],
-                ..empty()
-            },
-        ),
-        (
-            "triangle",
-            Scene { triangles: vec![Triangle { vertices: corners, material: 0 }], ..empty() },
-        ),
-        (
-            "cylinder",
-            Scene {
-                cylinders: vec![Cylinder {
-                    bottom: v(0.0, -1.0, -z - 1.0),
-                    top: v(0.0, 1.0, -z - 1.0),
-                    radius: 1.0,
-                    material: 0,
-                }],
-                ..empty()
-            },
-        ),
+        ("plane", of([plane(v(0.0, 0.0, -z), DVec3::Z)])),
+        ("sphere", of([sphere(v(0.0, 0.0, -z - 1.0), 1.0)])),
+        ("triangle", of([triangle(corners)])),
+        ("cylinder", of([cylinder(v(0.0, -1.0, -z - 1.0), 2.0, 1.0)])),
     ]
 }
 
@@ -64,10 +30,8 @@ fn random_scenes_agree() {
     for seed in 100..130 {
         let mut scene = random_scene(seed);
         scene.render.antialiasing = 0;
-        let work = tracer(&scene.with_arithmetic(TEXTBOOK), 48, 36, Execution::default())
-            .expect("a sound scene");
-        let psnr =
-            metrics::psnr(&model::render(&scene, 48, 36), &image::pixel_by_pixel(&*work, 48, 36));
+        let found = image::of_scene(&scene, 48, 36, TEXTBOOK);
+        let psnr = image::psnr(&model::render(&scene, 48, 36), &found);
         assert!(psnr >= 35.0, "seed {seed}: {psnr:.1} dB");
     }
 }
@@ -82,33 +46,20 @@ fn both_families_hit_the_same() {
     for _ in 0..4000 {
         let mut p = || 4.0 * v(draw(), draw(), draw());
         let (a, b, c, d, share) = (p(), p(), p(), p(), p() / 4.0);
-        let things = [
-            Scene { planes: vec![Plane { point: a, normal: b, material: 0 }], ..empty() },
-            Scene {
-                spheres: vec![Sphere { center: a, radius: 0.5 + b.length() / 2.0, material: 0 }],
-                ..empty()
-            },
-            Scene { triangles: vec![Triangle { vertices: [a, b, c], material: 0 }], ..empty() },
-            Scene {
-                cylinders: vec![Cylinder {
-                    bottom: a,
-                    top: a + (1.0 + b.x.abs()) * DVec3::Y,
-                    radius: 0.5 + b.length() / 2.0,
-                    material: 0,
-                }],
-                ..empty()
-            },
+        let radius = 0.5 + b.length() / 2.0;
+        let alone = [
+            plane(a, b),
+            sphere(a, radius),
+            triangle([a, b, c]),
+            cylinder(a, 1.0 + b.x.abs(), radius),
         ];
-        for (scene, hits) in things.iter().zip(&mut hits) {
+        for (primitive, hits) in alone.into_iter().zip(&mut hits) {
+            let scene = of([primitive]);
             let within = a + (b - a) * share.x.abs() + (c - a) * share.y.abs();
             let target = if scene.triangles.is_empty() { a + (b - c) / 4.0 } else { within };
             let (origin, direction) = (d, target - d);
-            let robust = Caster::new(&scene.with_arithmetic(Precision::F64))
-                .expect("a sound scene")
-                .closest_hit(origin, direction);
-            let found = Caster::new(&scene.with_arithmetic(TEXTBOOK))
-                .expect("a sound scene")
-                .closest_hit(origin, direction);
+            let [robust, found] = [Precision::F64.into(), TEXTBOOK]
+                .map(|arithmetic| caster(&scene, arithmetic).closest_hit(origin, direction));
             if robust.is_some_and(|hit| hit.t < 2e-3) {
                 continue;
             }
@@ -138,9 +89,9 @@ fn hits_nearer_than_the_offset_do_not_count() {
     assert_eq!(t(&ahead(5e-4)[0].1, DVec3::ZERO, -DVec3::Z), None);
 }
 
-/// Catches edges, rims and outlines that do not belong to the thing.
+/// Catches edges, rims and outlines that do not belong to the primitive.
 #[test]
-fn edges_belong_to_the_thing() {
+fn edges_belong_to_the_primitive() {
     let [_, (_, sphere), (_, triangle), (_, cylinder)] = ahead(1.0);
     assert_eq!(t(&sphere, v(0.0, 1.0, 0.0), -DVec3::Z), Some(2.0));
     assert_eq!(t(&triangle, v(0.25, -1.0, 0.0), -DVec3::Z), Some(1.0));
@@ -150,26 +101,11 @@ fn edges_belong_to_the_thing() {
 
 /// Catches a shadow ray that ends at or beyond the light.
 #[test]
-fn what_is_within_the_offset_of_a_light_hides_nothing() {
-    let mut scene = Scene {
-        planes: vec![Plane { point: DVec3::ZERO, normal: DVec3::Y, material: 0 }],
-        ..empty()
-    };
-    scene.lights.truncate(1);
+fn a_surface_within_the_offset_of_a_light_hides_nothing() {
+    let mut scene = of([plane(DVec3::ZERO, DVec3::Y)]);
     scene.lights[0].position = v(0.0, 4.0, 0.0);
-    let color = |scene: &Scene| {
-        Caster::new(&scene.with_arithmetic(TEXTBOOK))
-            .expect("a sound scene")
-            .color(v(0.0, 1.0, 0.0), -DVec3::Y)
-    };
-    let lit = color(&scene);
-    let ceiling = |y| Scene {
-        planes: vec![
-            scene.planes[0],
-            Plane { point: v(0.0, y, 0.0), normal: DVec3::Y, material: 0 },
-        ],
-        ..scene.clone()
-    };
-    assert_eq!(color(&ceiling(4.0 - 5e-4)), lit);
-    assert_ne!(color(&ceiling(4.0 - 2e-3)), lit);
+    let color = |scene: &Scene| caster(scene, TEXTBOOK).color(v(0.0, 1.0, 0.0), -DVec3::Y);
+    let ceiling = |y| with(scene.clone(), [plane(v(0.0, y, 0.0), DVec3::Y)]);
+    assert_eq!(color(&ceiling(4.0 - 5e-4)), color(&scene));
+    assert_ne!(color(&ceiling(4.0 - 2e-3)), color(&scene));
 }

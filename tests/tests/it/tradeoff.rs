@@ -1,4 +1,4 @@
-//! Speed against error: that the errors are those of the images, and that what is advised follows
+//! The study of speed against error: its errors are those of the images, and its advice follows
 //! from them.
 
 use rayweave_accuracy::ImageDifference;
@@ -8,7 +8,7 @@ use rayweave_accuracy::tradeoff::{
 use rayweave_contract::{Image, Work};
 use rayweave_core::{Sampling, Scene};
 use rayweave_measure::Protocol;
-use rayweave_tests::{image, metrics, model, scenes};
+use rayweave_tests::{image, model, scenes};
 use std::time::Duration;
 
 const SIZE: (u32, u32) = (20, 15);
@@ -17,7 +17,7 @@ fn render(work: &dyn Work) -> Result<Image, String> {
     Ok(image::pixel_by_pixel(work, SIZE.0, SIZE.1))
 }
 
-/// Of one round: nothing here is about time.
+/// Runs a study of one round: nothing here is about time.
 fn study(scene: &Scene) -> TradeoffStudy {
     let protocol =
         Protocol { min_rounds: 1, max_rounds: 1, budget: Duration::ZERO, goal: None, seed: 1 };
@@ -27,7 +27,7 @@ fn study(scene: &Scene) -> TradeoffStudy {
         .expect("a study")
 }
 
-fn image_with(scene: &Scene, setting: Setting) -> Image {
+fn rendered(scene: &Scene, setting: Setting) -> Image {
     render(&*setting.work(scene, SIZE).expect("a sound scene")).expect("an image")
 }
 
@@ -41,16 +41,13 @@ fn each_row_is_of_its_setting() {
     assert_eq!((study.rounds, study.rows.len()), (1, 4 * (13 * 3 + 5)));
     let truth = &study.reference.image;
     for row in &study.rows {
-        let found = image_with(&scene, row.setting);
+        let found = rendered(&scene, row.setting);
         assert_eq!(row.error, ImageDifference::between(truth, &found), "{}", row.setting);
         let exact = Setting { arithmetic: study.rows[0].setting.arithmetic, ..row.setting };
-        let arithmetic = ImageDifference::between(&image_with(&scene, exact), &found).rmse;
+        let arithmetic = ImageDifference::between(&rendered(&scene, exact), &found).rmse;
         assert_eq!(row.arithmetic_rmse, arithmetic, "{}", row.setting);
         let deep = Setting { max_reflections: scene.render.max_reflections, ..exact };
-        assert_eq!(
-            row.sampling_rmse,
-            ImageDifference::between(truth, &image_with(&scene, deep)).rmse
-        );
+        assert_eq!(row.sampling_rmse, ImageDifference::between(truth, &rendered(&scene, deep)).rmse);
         assert_eq!(row.samples_ns.len(), 1);
     }
     let beats = |a: &TradeoffRow, b: &TradeoffRow| {
@@ -70,9 +67,9 @@ fn each_row_is_of_its_setting() {
     assert_eq!(parts, ["whole scene", "planes", "spheres", "triangles", "cylinders"]);
 }
 
-/// Catches a reference that is not the filter's limit: an independent program comes ever nearer to
-/// it with a denser lattice, down to what its own endpoints are off, and the estimate of its error
-/// is no promise that it does not keep.
+/// Catches a reference that is not the filter's limit, and an estimate of its error that is too
+/// low: the model comes ever nearer to the reference with a denser lattice, down to the error of
+/// its own endpoints.
 #[test]
 fn the_reference_is_the_limit() {
     let mut scene = scenes::named("report");
@@ -80,7 +77,7 @@ fn the_reference_is_the_limit() {
     let mut last = 0.0;
     for density in [2, 4, 8, 16] {
         scene.render.antialiasing = density;
-        let psnr = metrics::psnr(&model::render(&scene, SIZE.0, SIZE.1), &reference.image);
+        let psnr = image::psnr(&model::render(&scene, SIZE.0, SIZE.1), &reference.picture);
         assert!(psnr > last + 2.0, "{psnr} dB at a density of {density}, {last} before");
         last = psnr;
     }
@@ -89,7 +86,7 @@ fn the_reference_is_the_limit() {
 }
 
 /// Catches samples of the wrong weight or in the wrong place: with no more rays than the lattice
-/// the other sampling is nearer to the limit, in each of the scenes.
+/// sampling by importance is nearer to the limit, in each of the scenes.
 #[test]
 fn importance_is_nearer_with_as_many_rays() {
     for name in scenes::NAMES {
@@ -98,8 +95,7 @@ fn importance_is_nearer_with_as_many_rays() {
         let measured = |sampling, antialiasing| {
             let own = Setting::report(scene.render.max_reflections);
             let setting = Setting { sampling, antialiasing, ..own };
-            let error =
-                ImageDifference::between(&reference.image, &image_with(&scene, setting)).rmse;
+            let error = ImageDifference::between(&reference.picture, &rendered(&scene, setting)).rmse;
             (setting.rays_per_pixel(), error)
         };
         for density in [2, 3, 4] {

@@ -1,18 +1,15 @@
 //! A closed mesh has no leaks: a ray from inside meets some triangle, also where it goes through an
-//! edge or a corner to the last bit.
+//! edge or a corner exactly.
 
 use glam::DVec3;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use rayweave_core::{Caster, Precision, Scene};
+use rayweave_core::Precision;
 use rayweave_tests::meshes::{self, cube, scene_of};
+use rayweave_tests::scenes::{PRECISIONS, caster};
 use rayweave_tests::transform::{enlarged, moved};
 
-fn caster(scene: &Scene, precision: Precision) -> Caster {
-    Caster::new(&scene.with_arithmetic(precision)).expect("a sound scene")
-}
-
-/// Where a ray is aimed: at a corner, a point of an edge or one of a face, of some triangle.
+/// Weights of a triangle's corners, which give a corner, a point of an edge or one of the face.
 fn aim() -> impl Strategy<Value = [f64; 3]> {
     let share = || (0..=16i32).prop_map(|k| f64::from(k) / 16.0);
     prop_oneof![
@@ -22,7 +19,7 @@ fn aim() -> impl Strategy<Value = [f64; 3]> {
     ]
 }
 
-/// Well within each mesh: at most 5/8 from the middle.
+/// A point well within each mesh: at most 5/8 from the middle.
 fn inside() -> impl Strategy<Value = DVec3> {
     let coordinate = || prop_oneof![Just(0.0), (-92..=92i32).prop_map(|k| f64::from(k) / 256.0)];
     [coordinate(), coordinate(), coordinate()].prop_map(DVec3::from_array)
@@ -56,12 +53,15 @@ proptest! {
         let scene = moved(&enlarged(&scene_of(mesh), scale), offset * scale);
         let origin = (from + offset) * scale;
         let direction = scale * (aim - from);
-        for precision in [Precision::F32, Precision::F64] {
+        for precision in PRECISIONS {
             let hit = caster(&scene, precision).closest_hit(origin, direction);
             prop_assert!(hit.is_some(), "{precision}: from {origin} along {direction}");
             // A leak to a triangle behind would be nearer or farther.
             let t = hit.map_or(0.0, |hit| hit.t);
-            prop_assert!((t - 1.0).abs() < 1e-3, "{precision}: t = {t} from {origin} along {direction}");
+            prop_assert!(
+                (t - 1.0).abs() < 1e-3,
+                "{precision}: t = {t} from {origin} along {direction}"
+            );
         }
     }
 }
@@ -94,7 +94,7 @@ fn no_ray_leaves_a_cube_through_its_symmetries() {
     };
     for from in grid().map(|point| 0.5 * point) {
         for aim in grid().filter(|point| point.abs().max_element() == 1.0) {
-            for precision in [Precision::F32, Precision::F64] {
+            for precision in PRECISIONS {
                 let hit = caster(&scene, precision).closest_hit(from, aim - from);
                 let hit =
                     hit.unwrap_or_else(|| panic!("{precision}: from {from} to {aim}: a leak"));
