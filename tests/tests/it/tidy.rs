@@ -1,4 +1,4 @@
-//! The repository's rules that no compiler knows.
+//! Rules of the repository that no compiler checks.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,7 +7,7 @@ fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// Every file below `folder` whose name ends so, with its text.
+/// Lists every file below `folder` whose name ends so, with its text.
 fn files(folder: &str, ending: &str) -> Vec<(String, String)> {
     let mut found = Vec::new();
     let mut folders = vec![repository().join(folder)];
@@ -15,10 +15,12 @@ fn files(folder: &str, ending: &str) -> Vec<(String, String)> {
         for entry in fs::read_dir(&folder).expect("a folder") {
             let path = entry.expect("an entry").path();
             if path.is_dir() {
-                folders.push(path);
+                let foreign = path.ends_with("target") || path.ends_with(".git");
+                folders.extend((!foreign).then_some(path));
             } else if path.to_string_lossy().ends_with(ending) {
                 let name = path.strip_prefix(repository()).expect("below").display().to_string();
-                found.push((name, fs::read_to_string(&path).expect("text")));
+                let text = fs::read(&path).expect("a file");
+                found.push((name, String::from_utf8_lossy(&text).into_owned()));
             }
         }
     }
@@ -34,8 +36,8 @@ fn manifests() -> Vec<(String, String)> {
     manifests
 }
 
-/// Neither the contract nor the tracer starts a thread, opens a file, reads a clock or prints:
-/// both have to be the same everywhere.
+/// Catches a contract or a tracer that starts a thread, opens a file, reads a clock or prints: both
+/// have to be the same everywhere.
 #[test]
 fn contract_and_core_touch_nothing_of_the_machine() {
     let sources = ["crates/contract/src", "crates/core/src"].map(|folder| files(folder, ".rs"));
@@ -48,7 +50,7 @@ fn contract_and_core_touch_nothing_of_the_machine() {
     }
 }
 
-/// Strategies, simulation and measurement know the contract, not the tracer.
+/// Catches strategies, a simulation or a measurement that know the tracer, not only the contract.
 #[test]
 fn nothing_between_contract_and_accuracy_depends_on_the_tracer() {
     let below =
@@ -59,7 +61,7 @@ fn nothing_between_contract_and_accuracy_depends_on_the_tracer() {
     }
 }
 
-/// A strategy that another crate depends on would have to be changed there too.
+/// Catches a strategy that another crate depends on, and would have to be changed there too.
 #[test]
 fn only_the_registry_names_a_strategy() {
     let strategies: Vec<String> = files("crates/strategies", "Cargo.toml")
@@ -74,7 +76,7 @@ fn only_the_registry_names_a_strategy() {
         }
     }
     for strategy in rayweave_registry::STRATEGIES {
-        // Or one for several, named after what they have in common.
+        // One folder for several strategies has the name that they begin with.
         let is_its = |folder: &String| {
             strategy
                 .name()
@@ -85,6 +87,7 @@ fn only_the_registry_names_a_strategy() {
     }
 }
 
+/// Catches a crate with a version, lints or a licence of its own.
 #[test]
 fn members_take_versions_lints_and_licence_from_the_workspace() {
     for (name, text) in manifests() {
@@ -97,14 +100,14 @@ fn members_take_versions_lints_and_licence_from_the_workspace() {
             assert!(text.contains(line), "{name}: {line}");
         }
         let lints =
-            text.contains("[lints]\nworkspace = true") || text.ends_with(&lints_of_who_calls_c());
+            text.contains("[lints]\nworkspace = true") || text.ends_with(&lints_that_allow_c());
         assert!(lints, "{name}: lints");
         assert!(!text.contains("version = "), "{name}: a version of its own");
     }
 }
 
-/// The workspace's lints, but that unsafe code may be allowed where it is.
-fn lints_of_who_calls_c() -> String {
+/// The workspace's lints with one word changed: unsafe code may be allowed in places.
+fn lints_that_allow_c() -> String {
     let text =
         fs::read_to_string(repository().join("Cargo.toml")).expect("the workspace's manifest");
     let begin = text.find("[workspace.lints.rust]").expect("lints");
@@ -113,7 +116,7 @@ fn lints_of_who_calls_c() -> String {
         + "\n"
 }
 
-/// C is called in one module a crate, and nothing else is unsafe.
+/// Catches unsafe code outside of the one module of a crate that calls C.
 #[test]
 fn unsafe_code_is_only_where_c_is_called() {
     for (name, text) in files("crates", ".rs") {
@@ -124,7 +127,8 @@ fn unsafe_code_is_only_where_c_is_called() {
     }
 }
 
-/// A strategy is read in one sitting, and says what its reader wants to know.
+/// Catches a strategy that is too long to read in one sitting, or leaves out what its reader wants
+/// to know.
 #[test]
 fn a_strategy_is_short_and_explains_itself() {
     for (name, text) in files("crates/strategies", "lib.rs") {
@@ -135,9 +139,11 @@ fn a_strategy_is_short_and_explains_itself() {
     }
 }
 
+/// Catches a file that has outgrown its purpose and should be split by subject.
 #[test]
 fn no_file_outgrows_its_purpose() {
-    for (name, text) in files("crates", ".rs") {
+    let sources = ["crates", "tests", "benches", "fuzz"].map(|folder| files(folder, ".rs"));
+    for (name, text) in sources.into_iter().flatten() {
         let lines = text.lines().count();
         assert!(lines <= 450, "{name}: {lines} lines");
     }
