@@ -60,8 +60,8 @@ fn neighbours_share_their_samples() {
 
 // The tracer
 
-/// The tolerance of an answer, relative to its size: 16 units of roundoff. Each answer takes a dozen
-/// or so roundings, those of the case's decimals among them. No case cancels or meets its surface
+/// The tolerance of an answer, relative to its size: 16 units of roundoff. Each answer takes about
+/// a dozen roundings, those of the case's decimals among them. No case cancels or meets its surface
 /// at less than 20 degrees, except for those whose numbers are exact. The worst takes 6 units.
 fn tolerance(precision: Precision) -> f64 {
     16.0 * match precision {

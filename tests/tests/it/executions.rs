@@ -34,7 +34,7 @@ fn executions_agree(scene: &Scene, size: (u32, u32), arithmetic: Arithmetic, nam
 }
 
 /// Catches a packet whose lanes are mixed up or rounded another way, a lattice point that goes to a
-/// wrong pixel, and a hit or a shadow that acceleration leaves out, in the scenes of the repository.
+/// wrong pixel, and a hit or a shadow that acceleration leaves out, in the repository's scenes.
 #[test]
 fn the_repository_s_scenes() {
     let hard = scenes::hard().into_iter().map(|name| format!("hard/{name}"));
