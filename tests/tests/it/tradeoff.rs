@@ -47,7 +47,10 @@ fn each_row_is_of_its_setting() {
         let arithmetic = ImageDifference::between(&rendered(&scene, exact), &found).rmse;
         assert_eq!(row.arithmetic_rmse, arithmetic, "{}", row.setting);
         let deep = Setting { max_reflections: scene.render.max_reflections, ..exact };
-        assert_eq!(row.sampling_rmse, ImageDifference::between(truth, &rendered(&scene, deep)).rmse);
+        assert_eq!(
+            row.sampling_rmse,
+            ImageDifference::between(truth, &rendered(&scene, deep)).rmse
+        );
         assert_eq!(row.samples_ns.len(), 1);
     }
     let beats = |a: &TradeoffRow, b: &TradeoffRow| {
@@ -77,7 +80,7 @@ fn the_reference_is_the_limit() {
     let mut last = 0.0;
     for density in [2, 4, 8, 16] {
         scene.render.antialiasing = density;
-        let psnr = image::psnr(&model::render(&scene, SIZE.0, SIZE.1), &reference.picture);
+        let psnr = image::psnr(&model::render(&scene, SIZE.0, SIZE.1), &reference.image);
         assert!(psnr > last + 2.0, "{psnr} dB at a density of {density}, {last} before");
         last = psnr;
     }
@@ -95,7 +98,7 @@ fn importance_is_nearer_with_as_many_rays() {
         let measured = |sampling, antialiasing| {
             let own = Setting::report(scene.render.max_reflections);
             let setting = Setting { sampling, antialiasing, ..own };
-            let error = ImageDifference::between(&reference.picture, &rendered(&scene, setting)).rmse;
+            let error = ImageDifference::between(&reference.image, &rendered(&scene, setting)).rmse;
             (setting.rays_per_pixel(), error)
         };
         for density in [2, 3, 4] {
