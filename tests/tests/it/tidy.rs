@@ -42,6 +42,9 @@ fn manifests() -> Vec<(String, String)> {
 fn contract_and_core_touch_nothing_of_the_machine() {
     let sources = ["crates/contract/src", "crates/core/src"].map(|folder| files(folder, ".rs"));
     for (name, text) in sources.into_iter().flatten() {
+        // An example in a comment may start threads.
+        let code = text.lines().filter(|line| !line.trim_start().starts_with("//"));
+        let text: String = code.collect();
         for word in
             ["thread::", "fs::", "time::", "net::", "env::", "process::", "println!", "mul_add"]
         {
