@@ -1,16 +1,15 @@
-//! Builds a rayon pool of a strategy's own: what every strategy on rayon needs, and no strategy
-//! should have to say twice.
+//! Builds the rayon pool of a strategy. All strategies on rayon share it.
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use rayweave_contract::StrategyError;
 use std::io;
 use std::num::NonZeroUsize;
 
-/// A pool with exactly `threads` computing threads, named after the strategy.
+/// Builds a pool of exactly `threads` threads, named after the strategy.
 ///
 /// # Errors
 ///
-/// A thread that could not be started.
+/// A thread could not be started.
 pub fn build(strategy: &'static str, threads: NonZeroUsize) -> Result<ThreadPool, StrategyError> {
     let threads = threads.get();
     ThreadPoolBuilder::new()

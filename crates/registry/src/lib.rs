@@ -1,8 +1,9 @@
-//! The one place that names every strategy. Lists, help, tests, benches and reports follow from it.
+//! The list of all strategies, the only place that names them. Help, tables, tests and benches
+//! follow from it.
 
 use rayweave_contract::Strategy;
 
-/// Every strategy, in the order of every list: the reference first, then from the simplest on.
+/// All strategies, in the order of every table: the reference first, then from the simplest on.
 pub static STRATEGIES: &[&dyn Strategy] = &[
     &rayweave_sequential::Sequential,
     &rayweave_scoped_bands::ScopedBands,
@@ -22,25 +23,25 @@ pub static STRATEGIES: &[&dyn Strategy] = &[
     &rayweave_openmp::GUIDED,
 ];
 
-/// Those that can be prepared here: what is meant by all strategies.
+/// Returns the strategies that can be prepared on this machine; `all` means these.
 #[must_use]
 pub fn available() -> Vec<&'static dyn Strategy> {
     STRATEGIES.iter().copied().filter(|strategy| strategy.unavailable().is_none()).collect()
 }
 
-/// The strategy that every other one is compared with.
+/// Returns the strategy that all others are compared with.
 #[must_use]
 pub fn reference() -> &'static dyn Strategy {
     STRATEGIES[0]
 }
 
-/// The strategy of this name.
+/// Returns the strategy with this name.
 #[must_use]
 pub fn find(name: &str) -> Option<&'static dyn Strategy> {
     STRATEGIES.iter().copied().find(|strategy| strategy.name() == name)
 }
 
-/// The strategy for who just wants the picture.
+/// Returns the strategy to use where nothing else decides.
 #[must_use]
 pub fn recommended() -> &'static dyn Strategy {
     &rayweave_tile_queue::TileQueue

@@ -1,9 +1,9 @@
-//! Forks scoped threads, joins them, and lets them stop together: what every strategy with
-//! hand-spawned threads needs, and no strategy should have to say twice.
+//! Starts scoped threads, joins them, and stops all of them when one fails. Strategies that start
+//! threads by hand share it.
 //!
-//! The team is forked at each call of [`run`]; nothing outlives it. The caller's thread only waits.
-//! As a member it would be one thread less to start, but Linux often leaves a new thread behind the
-//! one that started it, on the same core, until its scheduler looks again some milliseconds later.
+//! Each call of [`run`] starts the threads anew; none outlives the call. The caller's thread does
+//! not compute, because Linux often leaves a new thread on the core of the thread that started it
+//! until the next load balancing some milliseconds later.
 
 use rayweave_contract::{StrategyError, Tile, Work, render_tile};
 use std::iter;
@@ -13,11 +13,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::thread;
 
-/// The team's word that a member failed: leave the work as it is and return.
+/// The signal that a thread of the team failed: a body that receives it returns at once.
 #[derive(Debug)]
 pub struct Stop;
 
-/// Threads that stop together: those that [`run`] starts, or a library's.
+/// The shared state of threads that stop together: those that [`run`] starts, or a library's.
 #[derive(Debug)]
 pub struct Team {
     strategy: &'static str,
@@ -27,28 +27,28 @@ pub struct Team {
 
 /// Runs `body` on one thread for each of `shares`, all at the same time, and waits for them.
 ///
-/// A share is what the thread alone works on: a range, slices of the picture, or nothing but a
-/// reference to a queue that all of them take from.
+/// A share is the part that one thread works on: a range, slices of the image, or a reference to a
+/// queue that all threads take from.
 ///
 /// # Errors
 ///
-/// The first failure of any member: work that panicked, or a thread that could not be started.
-/// The members that run are told to stop at their next tile, and are joined before this returns.
+/// The first failure: the work panicked, or a thread could not be started. The other threads stop
+/// at their next tile and are joined before this returns.
 pub fn run<Share: Send>(
     strategy: &'static str,
     shares: impl ExactSizeIterator<Item = Share>,
     body: impl Fn(&Team, Share) -> Result<(), Stop> + Sync,
 ) -> Result<(), StrategyError> {
-    run_beside(strategy, shares, body, || {})
+    run_with(strategy, shares, body, || {})
 }
 
-/// As [`run`], while the caller's thread does `meanwhile`: it begins when all threads are started,
-/// or have failed to, and has to end when they do.
+/// Runs `body` as [`run`] does, and `meanwhile` on the caller's thread. `meanwhile` begins once the
+/// threads are started, or one could not be; it has to end when the threads do.
 ///
 /// # Errors
 ///
 /// As [`run`].
-pub fn run_beside<Share: Send>(
+pub fn run_with<Share: Send>(
     strategy: &'static str,
     shares: impl ExactSizeIterator<Item = Share>,
     body: impl Fn(&Team, Share) -> Result<(), Stop> + Sync,
@@ -60,7 +60,7 @@ pub fn run_beside<Share: Send>(
     thread::scope(|scope| {
         for (index, share) in shares.enumerate() {
             let thread = thread::Builder::new().name(format!("{strategy} {index}"));
-            // A member that returns `Stop` has nothing to add: the failure is with the team.
+            // The team keeps the failure, so `Stop` carries nothing more.
             if let Err(source) = thread.spawn_scoped(scope, move || drop(body(team_ref, share))) {
                 team_ref.fail(StrategyError::Spawn { strategy, threads, source });
                 break;
@@ -71,25 +71,25 @@ pub fn run_beside<Share: Send>(
     team.outcome()
 }
 
-/// Whether so many threads can be started at once, for libraries that would end the process or
-/// panic where they cannot: starts them, and ends them when the last has begun.
+/// Probes whether `threads` threads can run at the same time: starts them, and ends them when the
+/// last has begun. Call it before a library that aborts or panics when it cannot start its threads.
 ///
 /// # Errors
 ///
-/// A thread that could not be started.
-pub fn try_out(strategy: &'static str, threads: NonZeroUsize) -> Result<(), StrategyError> {
+/// A thread could not be started.
+pub fn probe(strategy: &'static str, threads: NonZeroUsize) -> Result<(), StrategyError> {
     let gate = Mutex::new(());
     let closed = gate.lock();
     let wait = |_: &Team, ()| {
         drop(gate.lock());
         Ok(())
     };
-    run_beside(strategy, iter::repeat_n((), threads.get()), wait, || drop(closed))
+    run_with(strategy, iter::repeat_n((), threads.get()), wait, || drop(closed))
 }
 
-/// Cuts `count` pieces into as many ranges as there are threads, equal but for one piece; empty
-/// ones where there are more threads than pieces.
-pub fn equal_shares(
+/// Partitions `count` pieces into one contiguous range for each thread. The lengths differ by one
+/// piece at most; some are 0 if there are more threads than pieces.
+pub fn block_partition(
     count: usize,
     threads: NonZeroUsize,
 ) -> impl ExactSizeIterator<Item = Range<usize>> {
@@ -98,7 +98,7 @@ pub fn equal_shares(
 }
 
 impl Team {
-    /// A team whose threads somebody else starts.
+    /// Returns a team for threads that a library starts.
     #[must_use]
     pub fn new(strategy: &'static str) -> Self {
         Self { strategy, stopped: AtomicBool::new(false), first_error: Mutex::new(None) }
@@ -108,7 +108,7 @@ impl Team {
     ///
     /// # Errors
     ///
-    /// [`Stop`] when this work or another member's failed.
+    /// [`Stop`] if the work fails, or has failed on another thread.
     pub fn render_tile(&self, work: &dyn Work, tile: &mut Tile<'_>) -> Result<(), Stop> {
         if self.stopped.load(Ordering::Relaxed) {
             return Err(Stop);
@@ -116,11 +116,11 @@ impl Team {
         render_tile(self.strategy, work, tile).map_err(|error| self.fail(error))
     }
 
-    /// What became of the work, once no thread is at it any more.
+    /// Returns the result of the whole team. Call it after the last thread has ended.
     ///
     /// # Errors
     ///
-    /// The first failure of any member.
+    /// The first failure.
     pub fn outcome(self) -> Result<(), StrategyError> {
         let first_error = self.first_error.into_inner().unwrap_or_else(PoisonError::into_inner);
         first_error.map_or(Ok(()), Err)
@@ -140,10 +140,10 @@ mod tests {
     use std::sync::mpsc;
 
     #[test]
-    fn shares_are_equal_but_for_one_piece_and_leave_nothing_out() {
+    fn blocks_differ_by_one_piece_at_most_and_cover_all() {
         for (count, threads) in [(0, 3), (1, 1), (2, 5), (10, 3), (7, 7), (500, 64)] {
             let threads = NonZeroUsize::new(threads).expect("not 0");
-            let shares: Vec<Range<usize>> = equal_shares(count, threads).collect();
+            let shares: Vec<Range<usize>> = block_partition(count, threads).collect();
             assert_eq!(shares.len(), threads.get());
             assert!(shares.iter().cloned().flatten().eq(0..count), "{shares:?}");
             let (least, most) = (count / threads, count.div_ceil(threads.get()));
@@ -151,23 +151,23 @@ mod tests {
         }
     }
 
-    /// Catches a sender that outlives its thread: the receiver would wait for ever.
+    /// Catches a sender that outlives its thread: the receiver would wait forever.
     #[test]
-    fn the_caller_works_beside_the_team() {
+    fn the_caller_runs_its_own_part_beside_the_team() {
         let (sender, receiver) = mpsc::channel();
         let mut received = Vec::new();
         let send = |_: &Team, (index, sender): (usize, mpsc::Sender<usize>)| {
             sender.send(index).map_err(|_| Stop)
         };
         let senders = iter::repeat_n(sender, 5).enumerate();
-        run_beside("test", senders, send, || received.extend(receiver)).expect("the threads start");
+        run_with("test", senders, send, || received.extend(receiver)).expect("the threads start");
         received.sort_unstable();
         assert_eq!(received, [0, 1, 2, 3, 4]);
     }
 
-    /// Catches a caller that has a share: what it starts may wait behind it.
+    /// Catches a share that runs on the caller's thread: new threads may wait behind it.
     #[test]
-    fn the_caller_only_waits() {
+    fn no_share_runs_on_the_callers_thread() {
         let (caller, ran) = (thread::current().id(), Mutex::new(Vec::new()));
         let note = |_: &Team, share: usize| {
             let by_caller = thread::current().id() == caller;
@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn threads_are_tried_out_together() {
-        try_out("test", NonZeroUsize::new(20).expect("not 0")).expect("20 threads start");
+    fn a_probe_starts_all_threads() {
+        probe("test", NonZeroUsize::new(20).expect("not 0")).expect("20 threads start");
     }
 }

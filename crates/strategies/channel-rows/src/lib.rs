@@ -75,7 +75,7 @@ impl Renderer for Channel {
                 let _ = sender.send((y, row));
             }
         };
-        thread_team::run_beside(NAME, senders, compute, || {
+        thread_team::run_with(NAME, senders, compute, || {
             for (y, row) in finished {
                 let begin = y as usize * width;
                 image.pixels_mut()[begin..begin + width].copy_from_slice(&row);

@@ -56,7 +56,7 @@ struct StaticShares {
 impl Renderer for StaticShares {
     fn render(&mut self, work: &dyn Work, image: &mut Image) -> Result<(), StrategyError> {
         let (width, height) = (image.width() as usize, image.height() as usize);
-        let shares = thread_team::equal_shares(height, self.threads);
+        let shares = thread_team::block_partition(height, self.threads);
         let image = Mutex::new(image);
         thread_team::run(NAME, shares, |team, share| {
             let mut row = vec![[0.0; 3]; width];

@@ -23,7 +23,7 @@ impl TileLoop {
         plan: Plan,
     ) -> Result<Self, StrategyError> {
         // gcc's OpenMP ends the process where a thread cannot be started.
-        thread_team::try_out(strategy, plan.threads)?;
+        thread_team::probe(strategy, plan.threads)?;
         let threads = plan.threads.get();
         // Too many for C are too many for any machine.
         let team_loop = Self {

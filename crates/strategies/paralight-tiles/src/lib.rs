@@ -10,7 +10,7 @@
 //! * **When it is right**: for flat loops over slices that are short or come often, where rayon's
 //!   start of a loop shows. It is young: below version 0.1.
 //!
-//! Its pool panics where a thread cannot be started, so the strategy first starts as many to probe.
+//! Its pool panics if a thread cannot be started, so `prepare` probes the threads first.
 
 use paralight::prelude::*;
 use paralight::threads::ThreadPool;
@@ -49,7 +49,7 @@ impl Strategy for ParalightTiles {
     }
 
     fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
-        thread_team::try_out(NAME, plan.threads)?;
+        thread_team::probe(NAME, plan.threads)?;
         let pool = ThreadPoolBuilder {
             num_threads: ThreadCount::Count(plan.threads),
             range_strategy: RangeStrategy::WorkStealing,

@@ -60,7 +60,7 @@ impl Renderer for Bands {
     fn render(&mut self, work: &dyn Work, image: &mut Image) -> Result<(), StrategyError> {
         let (width, height) = (image.width(), image.height() as usize);
         let mut rest = image.pixels_mut();
-        let bands = thread_team::equal_shares(height, self.threads).map(|rows| {
+        let bands = thread_team::block_partition(height, self.threads).map(|rows| {
             let band = rest.split_off_mut(..rows.len() * width as usize).unwrap_or_default();
             (rows.start as u32, band)
         });

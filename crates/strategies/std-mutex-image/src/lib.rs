@@ -55,7 +55,7 @@ struct StaticShares {
 impl Renderer for StaticShares {
     fn render(&mut self, work: &dyn Work, image: &mut Image) -> Result<(), StrategyError> {
         let (width, pixels) = (image.width() as usize, image.pixels().len());
-        let shares = thread_team::equal_shares(pixels, self.threads);
+        let shares = thread_team::block_partition(pixels, self.threads);
         let image = Mutex::new(image);
         thread_team::run(NAME, shares, |team, share| {
             for index in share {

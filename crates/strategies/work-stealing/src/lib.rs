@@ -58,7 +58,7 @@ struct Deques {
 impl Renderer for Deques {
     fn render(&mut self, work: &dyn Work, image: &mut Image) -> Result<(), StrategyError> {
         let tiles = image.tiles(self.plan.tile);
-        let shares = thread_team::equal_shares(tiles.len(), self.plan.threads);
+        let shares = thread_team::block_partition(tiles.len(), self.plan.threads);
         let mut tiles = tiles.into_iter();
         let deques: Vec<Worker<Tile<'_>>> = shares
             .map(|share| {
