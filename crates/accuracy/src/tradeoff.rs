@@ -141,19 +141,19 @@ impl TradeoffExperiment<'_> {
         let mut errors: Vec<Errors> = Vec::new();
         let mut exact = None;
         let mut repeatable = true;
-        let mut schedule = self.protocol.schedule(subjects.len());
-        while let Some(turn) = schedule.next(begin.elapsed()) {
-            progress(turn.fraction);
-            let subject = &mut subjects[turn.entry];
+        let mut rounds = self.protocol.rounds(subjects.len());
+        while let Some(slot) = rounds.next(begin.elapsed()) {
+            progress(slot.fraction);
+            let subject = &mut subjects[slot.entry];
             let Timed { image, digest, nanoseconds } =
                 timed(self.strategy, &subject.setting, subject.scene, self.size)?;
-            if turn.round.is_some() {
+            if slot.round.is_some() {
                 subject.samples_ns.push(nanoseconds);
                 repeatable &= subject.digest == Some(digest);
                 continue;
             }
             subject.digest = Some(digest);
-            if turn.entry < settings.len() {
+            if slot.entry < settings.len() {
                 // The most exact arithmetic comes first among settings that are otherwise equal.
                 if subject.setting.arithmetic == EXACT {
                     exact = Some(image.clone());
@@ -171,7 +171,7 @@ impl TradeoffExperiment<'_> {
             reference,
             rows: rows(&settings, &times, &errors),
             costs,
-            rounds: schedule.rounds(),
+            rounds: rounds.completed(),
             repeatable,
         })
     }

@@ -2,9 +2,9 @@
 //! work.
 
 use crate::overhead::{of_pixels, step};
-use crate::sheet::{Columns, Sheet};
 use crate::statistics::lower_quartile;
 use crate::synthetic::Synthetic;
+use crate::timed_image::{DispatchProbe, TimedImage};
 use rayweave_contract::{Granularity, Output, Policy, Renderer, Scheduling, Strategy};
 use rayweave_predict::{Access, Overheads, simulate};
 use std::num::NonZeroUsize;
@@ -29,14 +29,14 @@ pub fn calibrate(
     threads: NonZeroUsize,
     mut progress: impl FnMut(f64),
 ) -> Result<Vec<Overheads>, String> {
-    let mut sheets = Sheets::new(step(reference)?, threads)?;
+    let mut workloads = Workloads::new(step(reference)?, threads)?;
     let mut rounds = vec![Vec::new(); strategies.len()];
     for repetition in 0..REPETITIONS {
         progress(repetition as f64 / REPETITIONS as f64);
         for (&strategy, rounds) in strategies.iter().zip(&mut rounds) {
             let mut one = of_pixels(strategy, NonZeroUsize::MIN)?;
             let mut all = of_pixels(strategy, threads)?;
-            rounds.push(sheets.time(&mut *one, &mut *all)?);
+            rounds.push(workloads.time(&mut *one, &mut *all)?);
         }
     }
     let of = |(strategy, rounds): (&&dyn Strategy, &Vec<Times>)| {
@@ -46,32 +46,32 @@ pub fn calibrate(
 }
 
 /// What is rendered.
-struct Sheets {
-    columns: Columns,
-    single: Sheet,
+struct Workloads {
+    probe: DispatchProbe,
+    single: TimedImage,
     /// A long piece, and one twice as long.
-    alone: [Sheet; 2],
+    alone: [TimedImage; 2],
     /// One for each thread, and so too.
-    together: [Sheet; 2],
+    together: [TimedImage; 2],
     /// A load that is spread evenly.
-    spread: Sheet,
+    spread: TimedImage,
     /// The same load in the latter half of the pieces.
-    late: Sheet,
+    late: TimedImage,
 }
 
-impl Sheets {
+impl Workloads {
     fn new(step_ns: f64, threads: NonZeroUsize) -> Result<Self, String> {
         let steps = |ns: f64| (ns / step_ns).round() as u32;
         let threads = u32::try_from(threads.get()).unwrap_or(u32::MAX);
         let (long, (pieces, ns)) = (steps(LONG_PIECE), STOLEN);
         let late = steps(ns);
         Ok(Self {
-            columns: Columns::new()?,
-            single: Sheet::column(1, 0)?,
-            alone: [Sheet::column(1, long)?, Sheet::column(1, 2 * long)?],
-            together: [Sheet::column(threads, long)?, Sheet::column(threads, 2 * long)?],
-            spread: Sheet::column(pieces, steps(ns / 2.0))?,
-            late: Sheet::new(
+            probe: DispatchProbe::new()?,
+            single: TimedImage::column(1, 0)?,
+            alone: [TimedImage::column(1, long)?, TimedImage::column(1, 2 * long)?],
+            together: [TimedImage::column(threads, long)?, TimedImage::column(threads, 2 * long)?],
+            spread: TimedImage::column(pieces, steps(ns / 2.0))?,
+            late: TimedImage::new(
                 Synthetic(move |_, y| if y < pieces / 2 { 0 } else { late }),
                 1,
                 pieces,
@@ -82,8 +82,8 @@ impl Sheets {
     fn time(&mut self, one: &mut dyn Renderer, all: &mut dyn Renderer) -> Result<Times, String> {
         Ok(Times {
             single: self.single.time(one)?,
-            columns_one: self.columns.time(one)?,
-            columns_all: self.columns.time(all)?,
+            dispatch_one: self.probe.time(one)?,
+            dispatch_all: self.probe.time(all)?,
             alone: [self.alone[0].time(one)?, self.alone[1].time(one)?],
             together: [self.together[0].time(all)?, self.together[1].time(all)?],
             spread: self.spread.time(all)?,
@@ -92,12 +92,12 @@ impl Sheets {
     }
 }
 
-/// In nanoseconds, of what [`Sheets`] has; of columns the short and the long one's.
+/// In nanoseconds, of what [`Workloads`] has; of columns the short and the long one's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Times {
     single: f64,
-    columns_one: [f64; 2],
-    columns_all: [f64; 2],
+    dispatch_one: [f64; 2],
+    dispatch_all: [f64; 2],
     alone: [f64; 2],
     together: [f64; 2],
     spread: f64,
@@ -112,8 +112,8 @@ impl Times {
         };
         Self {
             single: of(|times| times.single),
-            columns_one: [of(|times| times.columns_one[0]), of(|times| times.columns_one[1])],
-            columns_all: [of(|times| times.columns_all[0]), of(|times| times.columns_all[1])],
+            dispatch_one: [of(|times| times.dispatch_one[0]), of(|times| times.dispatch_one[1])],
+            dispatch_all: [of(|times| times.dispatch_all[0]), of(|times| times.dispatch_all[1])],
             alone: [of(|times| times.alone[0]), of(|times| times.alone[1])],
             together: [of(|times| times.together[0]), of(|times| times.together[1])],
             spread: of(|times| times.spread),
@@ -127,10 +127,10 @@ impl Times {
 /// threads, and what became slower is the handover.
 fn overheads(policy: Policy, threads: usize, times: &Times) -> Overheads {
     // What comes out below 0 is noise.
-    let dispatch = |columns| Columns::slope(columns).max(0.0);
+    let dispatch = |times| DispatchProbe::slope(times).max(0.0);
     let (one, all) = match policy.granularity {
         Granularity::Band => (0.0, 0.0),
-        _ => (dispatch(times.columns_one), dispatch(times.columns_all)),
+        _ => (dispatch(times.dispatch_one), dispatch(times.dispatch_all)),
     };
     let others = threads.saturating_sub(1).max(1) as f64;
     let steals = threads > 1
@@ -200,8 +200,8 @@ mod tests {
     fn times(all: f64) -> Times {
         Times {
             single: 7.0,
-            columns_one: [5.0, 5.0 + 10.0 * PIECES],
-            columns_all: [5.0, 5.0 + all * PIECES],
+            dispatch_one: [5.0, 5.0 + 10.0 * PIECES],
+            dispatch_all: [5.0, 5.0 + all * PIECES],
             alone: [200.0, 390.0],
             together: [216.0, 416.0],
             spread: 300.0,

@@ -1,6 +1,6 @@
 //! The timing protocol: interleaved rounds in which every timed picture is verified.
 //!
-//! * In each round every row is measured once, as [`schedule`](crate::schedule) has it.
+//! * In each round every row is measured once, as [`rounds`](crate::rounds) has it.
 //! * A speed-up is the median over the rounds of the ratio to the reference in the same round.
 //! * The reference is measured a second time as the control: its "speed-up" over itself is 1, and
 //!   what its interval says instead is the error of the whole table.
@@ -28,7 +28,7 @@ mod tests;
 mod together_tests;
 
 use crate::measurement::{Measurement, Sample, compute_figures};
-use crate::schedule::Protocol;
+use crate::rounds::Protocol;
 use crate::statistics::LEAST_VALUES;
 use rayweave_contract::{Digest, Strategy};
 use std::num::NonZeroUsize;
@@ -183,13 +183,13 @@ impl Protocol {
             rendering.ok_or(CompareError::Interrupted(0))?.map_err(CompareError::Reference)?.digest;
         let mut tables: Vec<Vec<Measurement>> =
             executors.iter().map(|_| entries.iter().enumerate().map(new_row).collect()).collect();
-        let mut schedule = self.schedule(tables.len() * entries.len());
+        let mut rounds = self.rounds(tables.len() * entries.len());
         let mut running = vec![true; tables.len()];
         let mut next_look = self.min_rounds.max(1);
         let mut interrupted_after = None;
-        while let Some(turn) = schedule.next(executors[0].elapsed()) {
+        while let Some(slot) = rounds.next(executors[0].elapsed()) {
             // Without its reference a round says nothing.
-            if turn.first {
+            if slot.starts_round {
                 running = tables.iter().map(|rows| rows[0].passed()).collect();
             }
             if !running.contains(&true) {
@@ -197,13 +197,15 @@ impl Protocol {
             }
             // Not after each round: the more often one looks, the likelier an interval is narrow by
             // chance.
-            if let Some(rounds) = turn.round.filter(|&rounds| turn.first && rounds >= next_look) {
+            if let Some(rounds) =
+                slot.round.filter(|&rounds| slot.starts_round && rounds >= next_look)
+            {
                 if self.is_precise(&tables) {
                     break;
                 }
                 next_look = rounds + rounds.div_ceil(8);
             }
-            let (table, entry) = (turn.entry / entries.len(), turn.entry % entries.len());
+            let (table, entry) = (slot.entry / entries.len(), slot.entry % entries.len());
             let (row, entry) = (&mut tables[table][entry], &entries[entry]);
             if !running[table] || !row.passed() {
                 continue;
@@ -211,18 +213,18 @@ impl Protocol {
             progress(Progress {
                 strategy: entry.strategy.name(),
                 threads: row.threads,
-                rounds: turn.round.unwrap_or(0),
-                fraction: turn.fraction,
+                rounds: slot.round.unwrap_or(0),
+                fraction: slot.fraction,
             });
-            let result = uninterrupted(&mut *executors[table], |executor| match turn.round {
+            let result = uninterrupted(&mut *executors[table], |executor| match slot.round {
                 None => executor.warm_up(entry),
                 Some(_) => executor.render(entry),
             });
             let Some(result) = result else {
-                interrupted_after = Some(turn.round.unwrap_or(0));
+                interrupted_after = Some(slot.round.unwrap_or(0));
                 break;
             };
-            match turn.round {
+            match slot.round {
                 None => row.warm_up(result, digest),
                 Some(_) => row.add(result, digest),
             }
@@ -235,7 +237,7 @@ impl Protocol {
             // Of every row as many: what the broken round left behind has no counterpart.
             tables.iter_mut().flatten().for_each(|row| row.truncate(complete));
         }
-        let rounds = interrupted_after.unwrap_or(schedule.rounds());
+        let rounds = interrupted_after.unwrap_or(rounds.completed());
         tables.iter_mut().for_each(|rows| compute_figures(rows));
         let interrupted = interrupted_after.is_some();
         let comparison = |rows| Comparison { rows, digest, rounds, interrupted };

@@ -10,7 +10,7 @@
 use crate::catch_panic::catch_panic;
 use crate::efficiency::{Account, Losses};
 use crate::in_process::nanoseconds;
-use crate::schedule::Protocol;
+use crate::rounds::Protocol;
 use crate::sentinel;
 use crate::statistics::{Interval, ratio_interval};
 use crate::timeline::{Cost, TimeRecorder, Timeline};
@@ -184,11 +184,11 @@ impl Experiment<'_> {
 
         let begin = Instant::now();
         let mut digest = None;
-        let mut schedule = self.protocol.schedule(series.len());
-        while let Some(turn) = schedule.next(begin.elapsed()) {
-            progress(turn.fraction);
-            let series = &mut series[turn.entry];
-            series.render(self, cost, &mut image, turn.round.is_some())?;
+        let mut rounds = self.protocol.rounds(series.len());
+        while let Some(slot) = rounds.next(begin.elapsed()) {
+            progress(slot.fraction);
+            let series = &mut series[slot.entry];
+            series.render(self, cost, &mut image, slot.round.is_some())?;
             let found = image.digest();
             if *digest.get_or_insert(found) != found {
                 return Err(ExplainError::Different { strategy: series.strategy.name() });
@@ -199,7 +199,7 @@ impl Experiment<'_> {
             reference_ns: series[0].shortest_ns(),
             rows: places.iter().map(|places| row(&mut series, places, cost)).collect(),
             digest: digest.unwrap_or_else(|| image.digest()),
-            rounds: schedule.rounds(),
+            rounds: rounds.completed(),
             cost,
         })
     }

@@ -18,7 +18,7 @@ use crate::independent::Independent;
 use crate::measurement::Measurement;
 use crate::overhead::of_pixels;
 use crate::piece_costs::{Cut, OneByOne, PieceCosts};
-use crate::schedule::Protocol;
+use crate::rounds::Protocol;
 use crate::statistics::Interval;
 use rayweave_contract::{Granularity, ImageError, Strategy, Threads, Work};
 use rayweave_predict::fit::{amdahl, usl};

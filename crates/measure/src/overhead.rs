@@ -1,16 +1,16 @@
 //! What a strategy costs beside its work, on synthetic work: a piece's dispatch, the smallest task
 //! that is worth it, the smallest picture, and the first use.
 //!
-//! All strategies are measured in interleaved rounds, as [`schedule`](crate::schedule) has it, and
+//! All strategies are measured in interleaved rounds, as [`rounds`](crate::rounds) has it, and
 //! every picture is verified.
 
 mod curve;
 
 use crate::catch_panic::catch_panic;
-use crate::schedule::Protocol;
-use crate::sheet::{Columns, Sheet};
+use crate::rounds::Protocol;
 use crate::statistics::{Interval, median, median_interval};
 use crate::synthetic;
+use crate::timed_image::{DispatchProbe, TimedImage};
 use curve::{break_even, metg};
 use rayweave_contract::{Granularity, Plan, Renderer, Strategy};
 use std::num::{NonZeroU32, NonZeroUsize};
@@ -133,24 +133,25 @@ impl Overhead<'_> {
     /// The reference fails. Of any other strategy the row says why.
     pub fn run(&self, mut progress: impl FnMut(&str, f64)) -> Result<Study, OverheadError> {
         let begin = Instant::now();
-        let mut sheets = Sheets::new(self.reference).map_err(OverheadError::Reference)?;
+        let mut workloads = Workloads::new(self.reference).map_err(OverheadError::Reference)?;
         let strategies: Vec<&dyn Strategy> =
             std::iter::once(self.reference).chain(self.strategies.iter().copied()).collect();
         let mut samples: Vec<Result<Samples, Failure>> =
             vec![Ok(Samples::default()); strategies.len()];
-        let mut schedule = self.protocol.schedule(strategies.len());
-        while let Some(turn) = schedule.next(begin.elapsed()) {
-            let strategy = strategies[turn.entry];
-            progress(strategy.name(), turn.fraction);
+        let mut rounds = self.protocol.rounds(strategies.len());
+        while let Some(slot) = rounds.next(begin.elapsed()) {
+            let strategy = strategies[slot.entry];
+            progress(strategy.name(), slot.fraction);
             // Without the reference there is nothing to say of the others.
             if samples[0].is_err() {
                 break;
             }
-            let so_far = &mut samples[turn.entry];
-            let measured = if so_far.is_ok() { self.turn(strategy, &mut sheets) } else { continue };
+            let so_far = &mut samples[slot.entry];
+            let measured =
+                if so_far.is_ok() { self.measure(strategy, &mut workloads) } else { continue };
             match (so_far.as_mut(), measured) {
                 // The warm-up is no sample.
-                (Ok(samples), Ok(round)) if turn.round.is_some() => samples.rounds.push(round),
+                (Ok(samples), Ok(round)) if slot.round.is_some() => samples.rounds.push(round),
                 (_, Err(error)) => *so_far = Err(error),
                 _ => {}
             }
@@ -164,9 +165,9 @@ impl Overhead<'_> {
             granularity: strategy.policy().granularity,
             threads: self.threads_of(strategy).get(),
             figures: samples
-                .map(|samples| self.figures(strategy, &samples, &reference, sheets.step_ns)),
+                .map(|samples| self.figures(strategy, &samples, &reference, workloads.step_ns)),
         });
-        Ok(Study { rows: rows.collect(), step_ns: sheets.step_ns, rounds: schedule.rounds() })
+        Ok(Study { rows: rows.collect(), step_ns: workloads.step_ns, rounds: rounds.completed() })
     }
 
     fn threads_of(&self, strategy: &dyn Strategy) -> NonZeroUsize {
@@ -174,20 +175,25 @@ impl Overhead<'_> {
     }
 
     /// Everything once, for one strategy.
-    fn turn(&self, strategy: &dyn Strategy, sheets: &mut Sheets) -> Result<Round, Failure> {
+    fn measure(
+        &self,
+        strategy: &dyn Strategy,
+        workloads: &mut Workloads,
+    ) -> Result<Round, Failure> {
         let threads = self.threads_of(strategy);
         let failed = |error| Failure::Rendering(format!("{}: {error}", strategy.name()));
-        let times = |sheets: &mut [Sheet], renderer: &mut dyn Renderer| {
-            sheets
+        let times = |workloads: &mut [TimedImage], renderer: &mut dyn Renderer| {
+            workloads
                 .iter_mut()
-                .map(|sheet| sheet.time(renderer).map_err(failed))
+                .map(|image| image.time(renderer).map_err(failed))
                 .collect::<Result<Vec<_>, _>>()
         };
         let mut one = of_pixels(strategy, NonZeroUsize::MIN).map_err(Failure::Preparing)?;
-        let dispatch_one = Columns::slope(sheets.columns.time(&mut *one).map_err(failed)?);
+        let dispatch_one = DispatchProbe::slope(workloads.probe.time(&mut *one).map_err(failed)?);
         let mut renderer = of_pixels(strategy, threads).map_err(Failure::Preparing)?;
-        let dispatch_all = Columns::slope(sheets.columns.time(&mut *renderer).map_err(failed)?);
-        let tasks = times(&mut sheets.tasks, &mut *renderer)?;
+        let dispatch_all =
+            DispatchProbe::slope(workloads.probe.time(&mut *renderer).map_err(failed)?);
+        let tasks = times(&mut workloads.tasks, &mut *renderer)?;
         // Their threads would be there already: OpenMP keeps one pool for each calling thread.
         drop((one, renderer));
         let begin = Instant::now();
@@ -195,10 +201,10 @@ impl Overhead<'_> {
             .map_err(Failure::Preparing)?;
         let prepare = begin.elapsed().as_nanos() as f64;
         // The second time is neither the first nor later.
-        let uses = (0..3).map(|_| sheets.first.time(&mut *renderer).map_err(failed));
+        let uses = (0..3).map(|_| workloads.first.time(&mut *renderer).map_err(failed));
         let uses = uses.collect::<Result<Vec<_>, _>>()?;
         let (first, later) = (uses[0], uses[2]);
-        let pictures = times(&mut sheets.squares, &mut *renderer)?;
+        let pictures = times(&mut workloads.squares, &mut *renderer)?;
         Ok(Round { dispatch_one, dispatch_all, tasks, pictures, prepare, first, later })
     }
 
@@ -279,31 +285,31 @@ fn sides() -> impl Iterator<Item = u32> {
 }
 
 /// Everything that is rendered, made once for all rounds.
-struct Sheets {
+struct Workloads {
     step_ns: f64,
-    columns: Columns,
+    probe: DispatchProbe,
     /// By the power of two of their steps.
-    tasks: Vec<Sheet>,
+    tasks: Vec<TimedImage>,
     /// By [`sides`].
-    squares: Vec<Sheet>,
+    squares: Vec<TimedImage>,
     /// Of next to no work.
-    first: Sheet,
+    first: TimedImage,
 }
 
-impl Sheets {
+impl Workloads {
     fn new(reference: &dyn Strategy) -> Result<Self, String> {
         let step_ns = step(reference)?;
         let steps = (PIXEL_NS / step_ns).round() as u32;
         Ok(Self {
             step_ns,
-            columns: Columns::new()?,
+            probe: DispatchProbe::new()?,
             tasks: (0..=LARGEST_TASK)
-                .map(|power| Sheet::column(TASKS, 1 << power))
+                .map(|power| TimedImage::column(TASKS, 1 << power))
                 .collect::<Result<_, _>>()?,
             squares: sides()
-                .map(|side| Sheet::new(synthetic::even(steps), side, side))
+                .map(|side| TimedImage::new(synthetic::even(steps), side, side))
                 .collect::<Result<_, _>>()?,
-            first: Sheet::new(synthetic::even(0), FIRST_SIDE, FIRST_SIDE)?,
+            first: TimedImage::new(synthetic::even(0), FIRST_SIDE, FIRST_SIDE)?,
         })
     }
 }
@@ -320,7 +326,7 @@ pub(crate) fn of_pixels(
 pub(crate) fn step(reference: &dyn Strategy) -> Result<f64, String> {
     const STEPS: u32 = 1 << 10;
     let mut renderer = of_pixels(reference, NonZeroUsize::MIN)?;
-    let (mut none, mut many) = (Sheet::column(TASKS, 0)?, Sheet::column(TASKS, STEPS)?);
+    let (mut none, mut many) = (TimedImage::column(TASKS, 0)?, TimedImage::column(TASKS, STEPS)?);
     let times = (0..9).map(|_| Ok(many.time(&mut *renderer)? - none.time(&mut *renderer)?));
     let time = median(&times.collect::<Result<Vec<_>, String>>()?).unwrap_or(0.0);
     // A clock too coarse must not make a step of no time.

@@ -22,12 +22,12 @@ fn interrupted_in(call: usize) -> Result<Comparison, CompareError> {
 /// was killed told as a failure, wherever in a round it is.
 #[test]
 fn what_is_interrupted_is_of_the_complete_rounds() {
-    for turn in 0..3 {
-        let comparison = interrupted_in(1 + 3 + 7 * 3 + turn + 1).expect("enough rounds");
-        assert_eq!((comparison.rounds, comparison.interrupted), (7, true), "turn {turn}");
+    for slot in 0..3 {
+        let comparison = interrupted_in(1 + 3 + 7 * 3 + slot + 1).expect("enough rounds");
+        assert_eq!((comparison.rounds, comparison.interrupted), (7, true), "slot {slot}");
         for row in &comparison.rows {
-            assert!(row.passed() && row.speedup.is_some(), "turn {turn}: {row:?}");
-            assert_eq!(row.samples_ns.len(), 7, "turn {turn}: {}", row.strategy);
+            assert!(row.passed() && row.speedup.is_some(), "slot {slot}: {row:?}");
+            assert_eq!(row.samples_ns.len(), 7, "slot {slot}: {}", row.strategy);
         }
     }
     let all = protocol(8, 10, u64::MAX).run(&REFERENCE, &[], &mut fake(|_, _| right(1)), |_| {});
