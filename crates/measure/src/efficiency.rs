@@ -1,17 +1,17 @@
 //! Where the thread-time of a rendering went, and so what of its efficiency is lost to what.
 //!
 //! A rendering that takes `w` on `n` threads has a thread-time of `n w`. A thread computes, is
-//! between two pieces, has not begun yet, or is done and waits for the others: an [`Account`] puts
+//! between two pieces, has not begun yet, or is done and waits for the others: an [`TimeBreakdown`] puts
 //! each nanosecond into one of these. What a strategy loses is its thread-time less the time that
-//! the sequential rendering takes, and the [`Losses`] are the differences between three accounts:
-//! of the sequential rendering, of the strategy on one thread, and on all. Since an account leaves
+//! the sequential rendering takes, and the [`LostTime`] are the differences between three accounts:
+//! of the sequential rendering, of the strategy on one thread, and on all. Since an breakdown leaves
 //! nothing out, they add up to that exactly.
 
-use crate::timeline::{Cost, Lane, Timeline};
+use crate::timeline::{RecordingCost, Lane, Timeline};
 
 /// Where the thread-time of one rendering went; in nanoseconds, over all threads.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Account {
+pub struct TimeBreakdown {
     /// The threads that there are to compute on.
     pub threads: usize,
     /// From the beginning of the rendering to its end.
@@ -19,7 +19,7 @@ pub struct Account {
     /// Pieces computed.
     pub busy_ns: f64,
     /// From each piece to the thread's next.
-    pub between_ns: f64,
+    pub dispatch_ns: f64,
     /// From a thread's last piece to the last of all. A thread without any waits from the first
     /// piece of all on.
     pub waiting_ns: f64,
@@ -60,7 +60,7 @@ impl Cause {
 
 /// What is lost to each cause, in nanoseconds of thread-time. Negative where something is gained.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Losses([f64; Cause::ALL.len()]);
+pub struct LostTime([f64; Cause::ALL.len()]);
 
 /// A thread's begin and end of computing, what it recorded taken off.
 struct Span {
@@ -69,14 +69,14 @@ struct Span {
     busy: f64,
 }
 
-impl Account {
-    /// The account of a rendering on `threads` threads, or on as many as computed if these are
+impl TimeBreakdown {
+    /// The breakdown of a rendering on `threads` threads, or on as many as computed if these are
     /// more, without what it cost to record.
     ///
     /// Each piece of a thread is taken to have begun earlier by the cost of those that it recorded
     /// before, so the rendering ends earlier by what that brings the last of all forward.
     #[must_use]
-    pub fn of(timeline: &Timeline, threads: usize, cost: Cost) -> Self {
+    pub fn of(timeline: &Timeline, threads: usize, cost: RecordingCost) -> Self {
         let spans: Vec<Span> =
             timeline.lanes.iter().filter_map(|lane| Span::of(lane, cost)).collect();
         let threads = threads.max(spans.len()).max(1);
@@ -86,12 +86,12 @@ impl Account {
         let Some(recorded_last) = recorded_last.map(|ns| ns as f64) else {
             // Nobody computed.
             let serial_ns = threads as f64 * recorded_wall;
-            let (busy_ns, between_ns, waiting_ns) = (0.0, 0.0, 0.0);
+            let (busy_ns, dispatch_ns, waiting_ns) = (0.0, 0.0, 0.0);
             return Self {
                 threads,
                 wall_ns: recorded_wall,
                 busy_ns,
-                between_ns,
+                dispatch_ns,
                 waiting_ns,
                 serial_ns,
             };
@@ -105,13 +105,13 @@ impl Account {
             threads,
             wall_ns,
             busy_ns: sum(&|span| span.busy),
-            between_ns: sum(&|span| span.end - span.begin - span.busy),
+            dispatch_ns: sum(&|span| span.end - span.begin - span.busy),
             waiting_ns: sum(&|span| last - span.end) + idle * (last - first),
             serial_ns: sum(&|span| span.begin) + idle * first + threads as f64 * (wall_ns - last),
         }
     }
 
-    /// Threads times time, in nanoseconds: the sum of all that the account has.
+    /// Threads times time, in nanoseconds: the sum of all that the breakdown has.
     #[must_use]
     pub fn thread_time_ns(&self) -> f64 {
         self.threads as f64 * self.wall_ns
@@ -119,7 +119,7 @@ impl Account {
 }
 
 impl Span {
-    fn of(lane: &Lane, cost: Cost) -> Option<Self> {
+    fn of(lane: &Lane, cost: RecordingCost) -> Option<Self> {
         let (first, last) = (lane.pieces.first()?, lane.pieces.last()?);
         let pieces = lane.pieces.len() as f64;
         let inside = pieces * cost.inside_ns;
@@ -130,16 +130,16 @@ impl Span {
     }
 }
 
-impl Losses {
+impl LostTime {
     /// What a strategy loses `together`, on all its threads, by what it does `alone`, on one, and
     /// by what the `sequential` rendering does.
     #[must_use]
-    pub fn between(sequential: &Account, alone: &Account, together: &Account) -> Self {
+    pub fn new(sequential: &TimeBreakdown, alone: &TimeBreakdown, together: &TimeBreakdown) -> Self {
         Self(Cause::ALL.map(|cause| match cause {
             Cause::Redundant => alone.busy_ns - sequential.busy_ns,
             Cause::Slowdown => together.busy_ns - alone.busy_ns,
-            Cause::Dispatch => alone.between_ns - sequential.between_ns,
-            Cause::Contention => together.between_ns - alone.between_ns,
+            Cause::Dispatch => alone.dispatch_ns - sequential.dispatch_ns,
+            Cause::Contention => together.dispatch_ns - alone.dispatch_ns,
             Cause::Imbalance => together.waiting_ns - sequential.waiting_ns,
             Cause::Serial => together.serial_ns - sequential.serial_ns,
         }))
@@ -172,7 +172,7 @@ mod tests {
     use crate::timeline::Piece;
     use rayweave_contract::Rect;
 
-    const FREE: Cost = Cost { inside_ns: 0.0, outside_ns: 0.0 };
+    const FREE: RecordingCost = RecordingCost { inside_ns: 0.0, outside_ns: 0.0 };
 
     fn timeline(wall_ns: u64, lanes: &[&[(u64, u64)]]) -> Timeline {
         let piece = |&(begin_ns, end_ns): &(u64, u64)| Piece {
@@ -195,62 +195,62 @@ mod tests {
 
     #[test]
     fn every_nanosecond_is_somewhere() {
-        let account = Account::of(&uneven(), 2, FREE);
-        let expected = Account {
+        let breakdown = TimeBreakdown::of(&uneven(), 2, FREE);
+        let expected = TimeBreakdown {
             threads: 2,
             wall_ns: 100.0,
             busy_ns: 75.0 + 36.0,
-            between_ns: 5.0 + 4.0,
+            dispatch_ns: 5.0 + 4.0,
             waiting_ns: 30.0,
             serial_ns: 10.0 + 20.0 + 2.0 * 10.0,
         };
-        assert_eq!(account, expected);
-        assert_eq!(account.thread_time_ns(), 111.0 + 9.0 + 30.0 + 50.0);
+        assert_eq!(breakdown, expected);
+        assert_eq!(breakdown.thread_time_ns(), 111.0 + 9.0 + 30.0 + 50.0);
     }
 
     /// Catches idle threads that are forgotten, or that wait before anybody can have a piece.
     #[test]
     fn a_thread_without_a_piece_waits_from_the_first_to_the_last() {
-        let account = Account::of(&uneven(), 4, FREE);
+        let breakdown = TimeBreakdown::of(&uneven(), 4, FREE);
         assert_eq!(
-            (account.waiting_ns, account.serial_ns),
+            (breakdown.waiting_ns, breakdown.serial_ns),
             (30.0 + 2.0 * 80.0, 50.0 + 2.0 * (10.0 + 10.0))
         );
-        assert_eq!((account.busy_ns, account.between_ns), (111.0, 9.0));
+        assert_eq!((breakdown.busy_ns, breakdown.dispatch_ns), (111.0, 9.0));
         // More threads than there should be are all there.
-        assert_eq!(Account::of(&uneven(), 1, FREE), Account::of(&uneven(), 2, FREE));
+        assert_eq!(TimeBreakdown::of(&uneven(), 1, FREE), TimeBreakdown::of(&uneven(), 2, FREE));
     }
 
     #[test]
     fn a_rendering_without_a_piece_is_nothing_but_ends() {
-        let account = Account::of(&timeline(7, &[]), 3, FREE);
-        assert_eq!((account.thread_time_ns(), account.serial_ns), (21.0, 21.0));
+        let breakdown = TimeBreakdown::of(&timeline(7, &[]), 3, FREE);
+        assert_eq!((breakdown.thread_time_ns(), breakdown.serial_ns), (21.0, 21.0));
     }
 
     /// Catches a cost that is taken off twice, for the last piece, or not off the whole.
     #[test]
     fn the_cost_of_recording_is_taken_off() {
-        let account = Account::of(&uneven(), 2, Cost { inside_ns: 2.0, outside_ns: 1.0 });
+        let breakdown = TimeBreakdown::of(&uneven(), 2, RecordingCost { inside_ns: 2.0, outside_ns: 1.0 });
         // The threads end 5 and 8 earlier, and the rendering with the first of them.
-        let expected = Account {
+        let expected = TimeBreakdown {
             threads: 2,
             wall_ns: 95.0,
             busy_ns: 111.0 - 2.0 * 5.0,
-            between_ns: 9.0 - 1.0 - 2.0,
+            dispatch_ns: 9.0 - 1.0 - 2.0,
             waiting_ns: 85.0 - 52.0,
             serial_ns: 50.0,
         };
-        assert_eq!(account, expected);
-        let sum = account.busy_ns + account.between_ns + account.waiting_ns + account.serial_ns;
-        assert_eq!(account.thread_time_ns(), sum);
+        assert_eq!(breakdown, expected);
+        let sum = breakdown.busy_ns + breakdown.dispatch_ns + breakdown.waiting_ns + breakdown.serial_ns;
+        assert_eq!(breakdown.thread_time_ns(), sum);
     }
 
     #[test]
     fn losses_are_the_differences_and_add_up() {
-        let sequential = Account::of(&timeline(90, &[&[(2, 40), (41, 88)]]), 1, FREE);
-        let alone = Account::of(&timeline(120, &[&[(5, 40), (42, 80), (84, 110)]]), 1, FREE);
-        let together = Account::of(&uneven(), 2, FREE);
-        let losses = Losses::between(&sequential, &alone, &together);
+        let sequential = TimeBreakdown::of(&timeline(90, &[&[(2, 40), (41, 88)]]), 1, FREE);
+        let alone = TimeBreakdown::of(&timeline(120, &[&[(5, 40), (42, 80), (84, 110)]]), 1, FREE);
+        let together = TimeBreakdown::of(&uneven(), 2, FREE);
+        let losses = LostTime::new(&sequential, &alone, &together);
         let expected = [
             (Cause::Redundant, 99.0 - 85.0),
             (Cause::Slowdown, 111.0 - 99.0),
@@ -267,9 +267,9 @@ mod tests {
     #[test]
     fn sequential_loses_nothing_against_itself_but_the_other_threads() {
         let timeline = timeline(90, &[&[(2, 40), (41, 88)]]);
-        let one = Account::of(&timeline, 1, FREE);
-        assert_eq!(Losses::between(&one, &one, &one).total_ns(), 0.0);
-        let three = Losses::between(&one, &one, &Account::of(&timeline, 3, FREE));
+        let one = TimeBreakdown::of(&timeline, 1, FREE);
+        assert_eq!(LostTime::new(&one, &one, &one).total_ns(), 0.0);
+        let three = LostTime::new(&one, &one, &TimeBreakdown::of(&timeline, 3, FREE));
         assert_eq!((three.to(Cause::Imbalance), three.to(Cause::Serial)), (2.0 * 86.0, 2.0 * 4.0));
         assert_eq!(three.total_ns(), 2.0 * 90.0);
     }

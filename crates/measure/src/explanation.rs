@@ -8,12 +8,12 @@
 //! environments", 2016.
 
 use crate::catch_panic::catch_panic;
-use crate::efficiency::{Account, Losses};
+use crate::efficiency::{TimeBreakdown, LostTime};
 use crate::in_process::nanoseconds;
 use crate::rounds::Protocol;
 use crate::sentinel;
 use crate::statistics::{Interval, ratio_interval};
-use crate::timeline::{Cost, TimeRecorder, Timeline};
+use crate::timeline::{RecordingCost, TimeRecorder, Timeline};
 use rayweave_contract::{Digest, Image, ImageError, Plan, Strategy, Work};
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::time::Instant;
@@ -68,7 +68,7 @@ pub struct Explanation {
     /// Rounds measured.
     pub rounds: usize,
     /// What was taken off the recorded times.
-    pub cost: Cost,
+    pub cost: RecordingCost,
 }
 
 /// What became of the efficiency of one strategy.
@@ -84,7 +84,7 @@ pub struct Row {
     /// the reference's.
     pub lost_ns: f64,
     /// To what. Their sum misses [`Row::lost_ns`] by what recorded and plain renderings differ in.
-    pub losses: Losses,
+    pub lost_time: LostTime,
     /// Recorded over plain time, within a round.
     pub recorded: Interval,
     /// A gap between two pieces that is longer than 999 of 1000 on a single thread, in nanoseconds.
@@ -103,7 +103,7 @@ impl Row {
     /// What the causes do not add up to of the loss, in nanoseconds; below 0 if they are more.
     #[must_use]
     pub fn unexplained_ns(&self) -> f64 {
-        self.lost_ns - self.losses.total_ns()
+        self.lost_ns - self.lost_time.total_ns()
     }
 }
 
@@ -125,7 +125,7 @@ enum Recording {
     /// They are plain.
     Off,
     /// The sums.
-    Account,
+    Breakdown,
     /// The sums and every piece, which may be as many as pixels.
     Timeline,
 }
@@ -133,7 +133,7 @@ enum Recording {
 /// What is kept of a recorded rendering.
 struct Recorded {
     wall_ns: u64,
-    account: Account,
+    breakdown: TimeBreakdown,
     long_gap_ns: f64,
     /// Empty unless it is asked for.
     timeline: Timeline,
@@ -161,10 +161,10 @@ impl Experiment<'_> {
         mut progress: impl FnMut(f64),
     ) -> Result<Explanation, ExplainError> {
         let mut image = Image::new(self.size.0, self.size.1)?;
-        let cost = Cost::here();
+        let cost = RecordingCost::here();
         let mut series = vec![
             Series::new(self.reference, NonZeroUsize::MIN, Recording::Off),
-            Series::new(self.reference, NonZeroUsize::MIN, Recording::Account),
+            Series::new(self.reference, NonZeroUsize::MIN, Recording::Breakdown),
         ];
         let mut places = Vec::with_capacity(strategies.len());
         for &strategy in strategies {
@@ -177,7 +177,7 @@ impl Experiment<'_> {
             let alone = if threads.get() == 1 {
                 recorded
             } else {
-                add(NonZeroUsize::MIN, Recording::Account)
+                add(NonZeroUsize::MIN, Recording::Breakdown)
             };
             places.push(Places { alone, plain: add(threads, Recording::Off), recorded });
         }
@@ -206,19 +206,19 @@ impl Experiment<'_> {
 }
 
 /// Takes the time line out of the series.
-fn row(series: &mut [Series<'_>], &Places { alone, plain, recorded }: &Places, cost: Cost) -> Row {
+fn row(series: &mut [Series<'_>], &Places { alone, plain, recorded }: &Places, cost: RecordingCost) -> Row {
     let threads = series[plain].threads.get();
     let wall_ns = series[plain].shortest_ns();
     // The first two are the reference's.
     let [sequential, on_one, on_all] =
-        [1, alone, recorded].map(|place| series[place].account(cost));
+        [1, alone, recorded].map(|place| series[place].breakdown(cost));
     let over_plain = ratio_interval(&series[recorded].wall_ns, &series[plain].wall_ns);
     Row {
         strategy: series[plain].strategy.name(),
         threads,
         wall_ns,
         lost_ns: threads as f64 * wall_ns - series[0].shortest_ns(),
-        losses: Losses::between(&sequential, &on_one, &on_all),
+        lost_time: LostTime::new(&sequential, &on_one, &on_all),
         recorded: over_plain.unwrap_or(Interval { median: 1.0, low: 1.0, high: 1.0 }),
         long_gap_ns: series[alone].quickest.as_ref().map_or(0.0, |quickest| quickest.long_gap_ns),
         timeline: series[recorded]
@@ -238,7 +238,7 @@ impl<'a> Series<'a> {
     fn render(
         &mut self,
         experiment: &Experiment<'_>,
-        cost: Cost,
+        cost: RecordingCost,
         image: &mut Image,
         counts: bool,
     ) -> Result<(), ExplainError> {
@@ -269,7 +269,7 @@ impl<'a> Series<'a> {
         if let Some(timeline) = timeline.filter(is_quicker) {
             self.quickest = Some(Recorded {
                 wall_ns: timeline.wall_ns,
-                account: Account::of(&timeline, self.threads.get(), cost),
+                breakdown: TimeBreakdown::of(&timeline, self.threads.get(), cost),
                 long_gap_ns: long_gap_ns(&timeline),
                 timeline: if self.recording == Recording::Timeline {
                     timeline
@@ -286,9 +286,9 @@ impl<'a> Series<'a> {
     }
 
     /// Of the quickest recorded rendering; of none if there is none.
-    fn account(&self, cost: Cost) -> Account {
-        let of_none = || Account::of(&Timeline::default(), self.threads.get(), cost);
-        self.quickest.as_ref().map_or_else(of_none, |quickest| quickest.account)
+    fn breakdown(&self, cost: RecordingCost) -> TimeBreakdown {
+        let of_none = || TimeBreakdown::of(&Timeline::default(), self.threads.get(), cost);
+        self.quickest.as_ref().map_or_else(of_none, |quickest| quickest.breakdown)
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::catch_panic::catch_panic;
 use crate::compare::{Entry, Executor};
 use crate::measurement::Sample;
-use crate::recorder::{Cost, Tally};
+use crate::recorder::{RayCost, RayCounter};
 use crate::sentinel;
 use crate::usage::Usage;
 use rayweave_contract::{Image, ImageError, Plan, Rect, Work};
@@ -21,7 +21,7 @@ pub struct InProcessExecutor<'a> {
     image: Image,
     begin: Instant,
     /// The number of primary rays of a tile.
-    rays: Option<&'a Cost<'a>>,
+    rays: Option<&'a RayCost<'a>>,
 }
 
 impl<'a> InProcessExecutor<'a> {
@@ -45,7 +45,7 @@ impl<'a> InProcessExecutor<'a> {
     /// as one tile. Nothing is counted if it returns `None` for one of them. Timed renderings do
     /// not count.
     #[must_use]
-    pub fn counting(self, rays: &'a Cost<'a>) -> Self {
+    pub fn counting(self, rays: &'a RayCost<'a>) -> Self {
         Self { rays: Some(rays), ..self }
     }
 
@@ -106,10 +106,10 @@ impl Executor for InProcessExecutor<'_> {
 
     fn warm_up(&mut self, entry: &Entry<'_>) -> Result<Sample, String> {
         let Some(rays) = self.rays else { return self.render(entry) };
-        let tally = Tally::new(self.work, rays);
-        let sample = self.render_work(&tally, entry)?;
+        let counter = RayCounter::new(self.work, rays);
+        let sample = self.render_work(&counter, entry)?;
         let whole = Rect { x: 0, y: 0, width: self.image.width(), height: self.image.height() };
-        let Some((primary, needed)) = tally.finish().zip(rays(whole)) else { return Ok(sample) };
+        let Some((primary, needed)) = counter.finish().zip(rays(whole)) else { return Ok(sample) };
         let redundant_rays = Some(primary.saturating_sub(needed));
         Ok(Sample { primary_rays: Some(primary), redundant_rays, ..sample })
     }

@@ -115,22 +115,22 @@ impl Record {
 }
 
 /// What a tile costs, by its rectangle; `None` if that does not tell.
-pub type Cost<'a> = dyn Fn(Rect) -> Option<u64> + Sync + 'a;
+pub type RayCost<'a> = dyn Fn(Rect) -> Option<u64> + Sync + 'a;
 
 /// Adds up what the tiles cost that the work inside completes: of any number of tiles a single sum.
 /// An addition for each tile is little, but more than nothing: not for timed runs.
-pub struct Tally<'a> {
+pub struct RayCounter<'a> {
     work: &'a dyn Work,
-    cost: &'a Cost<'a>,
+    cost: &'a RayCost<'a>,
     sum: AtomicU64,
     /// Whether the cost of a tile was unknown.
     unknown: AtomicBool,
 }
 
-impl<'a> Tally<'a> {
+impl<'a> RayCounter<'a> {
     /// Adds up what is rendered of `work`.
     #[must_use]
-    pub fn new(work: &'a dyn Work, cost: &'a Cost<'a>) -> Self {
+    pub fn new(work: &'a dyn Work, cost: &'a RayCost<'a>) -> Self {
         Self { work, cost, sum: AtomicU64::new(0), unknown: AtomicBool::new(false) }
     }
 
@@ -141,7 +141,7 @@ impl<'a> Tally<'a> {
     }
 }
 
-impl Work for Tally<'_> {
+impl Work for RayCounter<'_> {
     fn render(&self, tile: &mut Tile<'_>) {
         self.work.render(tile);
         match (self.cost)(tile.rect()) {
@@ -151,9 +151,9 @@ impl Work for Tally<'_> {
     }
 }
 
-impl fmt::Debug for Tally<'_> {
+impl fmt::Debug for RayCounter<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Tally").field("sum", &self.sum).finish_non_exhaustive()
+        f.debug_struct("RayCounter").field("sum", &self.sum).finish_non_exhaustive()
     }
 }
 
@@ -217,18 +217,18 @@ mod tests {
     fn costs_of_all_threads_add_up() {
         let cost =
             |rect: Rect| (rect.x < 4).then(|| u64::from(100 * rect.x + 10 * rect.y + rect.width));
-        let tally = Tally::new(&Black, &cost);
-        tally.render(&mut Tile::pixel(3, 2, &mut [1.0; 3]));
+        let counter = RayCounter::new(&Black, &cost);
+        counter.render(&mut Tile::pixel(3, 2, &mut [1.0; 3]));
         thread::scope(|scope| {
             for y in 0..2 {
-                let tally = &tally;
-                scope.spawn(move || tally.render(&mut Tile::row(1, y, &mut [[1.0; 3]; 5])));
+                let counter = &counter;
+                scope.spawn(move || counter.render(&mut Tile::row(1, y, &mut [[1.0; 3]; 5])));
             }
         });
-        assert_eq!(tally.finish(), Some(321 + 105 + 115));
+        assert_eq!(counter.finish(), Some(321 + 105 + 115));
 
-        let tally = Tally::new(&Black, &cost);
-        [3, 4, 3].into_iter().for_each(|x| tally.render(&mut Tile::pixel(x, 2, &mut [1.0; 3])));
-        assert_eq!(tally.finish(), None);
+        let counter = RayCounter::new(&Black, &cost);
+        [3, 4, 3].into_iter().for_each(|x| counter.render(&mut Tile::pixel(x, 2, &mut [1.0; 3])));
+        assert_eq!(counter.finish(), None);
     }
 }

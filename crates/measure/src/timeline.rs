@@ -2,11 +2,11 @@
 //!
 //! Each thread writes to memory of its own, which is there before the rendering begins; nothing is
 //! shared on the way. What remains are two looks at the clock and a few stores, which
-//! [`Cost::here`] measures.
+//! [`RecordingCost::here`] measures.
 
 mod cost;
 
-pub use cost::Cost;
+pub use cost::RecordingCost;
 
 use rayweave_contract::{Rect, Tile, Work};
 use std::cell::RefCell;

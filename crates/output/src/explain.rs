@@ -13,7 +13,7 @@ use plotters::style::RGBColor;
 use rayweave_contract::{Image, ImageError};
 use rayweave_measure::efficiency::Cause;
 use rayweave_measure::explanation::{Explanation, Row};
-use rayweave_measure::recorder::Cost;
+use rayweave_measure::recorder::RayCost;
 use rayweave_measure::timeline::{Lane, Timeline};
 use rayweave_measure::{Machine, Noise};
 use serde::Serialize;
@@ -30,7 +30,7 @@ pub struct Report<'a> {
     /// What was measured.
     pub explanation: &'a Explanation,
     /// The primary rays of a piece.
-    pub rays: &'a Cost<'a>,
+    pub rays: &'a RayCost<'a>,
     /// What it was measured on.
     pub machine: &'a Machine,
     /// What else went on there.
@@ -114,12 +114,12 @@ struct Thread<'a> {
 
 impl<'a> Thread<'a> {
     /// Those of a row's time line.
-    fn all(row: &'a Row, rays: &Cost<'_>) -> Vec<Self> {
+    fn all(row: &'a Row, rays: &RayCost<'_>) -> Vec<Self> {
         let of = |lane| Self::of(lane, &row.timeline, row.long_gap_ns, rays);
         row.timeline.lanes.iter().map(of).collect()
     }
 
-    fn of(lane: &'a Lane, timeline: &Timeline, long_gap_ns: f64, rays: &Cost<'_>) -> Self {
+    fn of(lane: &'a Lane, timeline: &Timeline, long_gap_ns: f64, rays: &RayCost<'_>) -> Self {
         let begin_ns = lane.pieces.first().map_or(0, |piece| piece.begin_ns);
         let end_ns = lane.pieces.last().map_or(0, |piece| piece.end_ns);
         let long_gaps = || lane.gaps_ns().filter(|&ns| ns as f64 > long_gap_ns);

@@ -122,7 +122,7 @@ fn only_what_is_shown_is_kept() {
         Protocol { min_rounds: 1, max_rounds: 1, budget: Duration::ZERO, goal: None, seed: 1 };
     let reference = &Obedience::AllOfThem;
     let experiment = Experiment { work: &Grey, size: (5, 4), tile: SIDE, reference, protocol };
-    let free = Cost { inside_ns: 0.0, outside_ns: 0.0 };
+    let free = RecordingCost { inside_ns: 0.0, outside_ns: 0.0 };
     let kept = |recording| {
         let mut series = Series::new(reference, NonZeroUsize::MIN, recording);
         let mut image = Image::new(5, 4).expect("a picture");
@@ -132,7 +132,7 @@ fn only_what_is_shown_is_kept() {
         series.quickest.map(|quickest| quickest.timeline)
     };
     assert_eq!(kept(Recording::Off), None);
-    assert_eq!(kept(Recording::Account), Some(Timeline { wall_ns: 0, lanes: Vec::new() }));
+    assert_eq!(kept(Recording::Breakdown), Some(Timeline { wall_ns: 0, lanes: Vec::new() }));
     let timeline = kept(Recording::Timeline).expect("recorded");
     let pieces = &timeline.lanes[0].pieces;
     assert_eq!((pieces.len(), pieces.capacity()), (6, 6));

@@ -7,7 +7,7 @@ use std::time::Instant;
 
 /// What the recording of a piece adds to a rendering, in nanoseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Cost {
+pub struct RecordingCost {
     /// To the time of the piece itself: the work's share of two looks at the clock.
     pub inside_ns: f64,
     /// To the time between it and the next.
@@ -26,7 +26,7 @@ impl Work for Nothing {
     fn render(&self, _: &mut Tile<'_>) {}
 }
 
-impl Cost {
+impl RecordingCost {
     /// Records work that does nothing. Takes a few milliseconds.
     #[must_use]
     pub fn here() -> Self {

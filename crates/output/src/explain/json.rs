@@ -2,7 +2,7 @@
 
 use super::{Report, Thread, imbalance};
 use crate::json;
-use rayweave_measure::efficiency::{Cause, Losses};
+use rayweave_measure::efficiency::{Cause, LostTime};
 use rayweave_measure::explanation::Row;
 use rayweave_measure::{Interval, Machine, Noise};
 use serde::Serialize;
@@ -80,7 +80,7 @@ fn entry<'a>(report: &Report<'a>, row: &'a Row) -> Entry<'a> {
         wall_ns: row.wall_ns,
         speedup: report.explanation.reference_ns / row.wall_ns,
         lost_ns: row.lost_ns,
-        losses_ns: causes(&row.losses),
+        losses_ns: causes(&row.lost_time),
         unexplained_ns: row.unexplained_ns(),
         recorded_over_plain: row.recorded,
         imbalance: imbalance(row),
@@ -89,7 +89,7 @@ fn entry<'a>(report: &Report<'a>, row: &'a Row) -> Entry<'a> {
     }
 }
 
-fn causes(losses: &Losses) -> Causes {
+fn causes(losses: &LostTime) -> Causes {
     Causes {
         redundant: losses.to(Cause::Redundant),
         slowdown: losses.to(Cause::Slowdown),

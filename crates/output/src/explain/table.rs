@@ -52,14 +52,14 @@ fn causes(explanation: &Explanation, row: &Row, unit: Unit) -> String {
         ]
     };
     let useful = cells("useful work", explanation.reference_ns, 1.0);
-    let lost = Cause::ALL.map(|cause| cells(name(cause), row.losses.to(cause), -1.0));
+    let lost = Cause::ALL.map(|cause| cells(name(cause), row.lost_time.to(cause), -1.0));
     let rest = cells("not explained", row.unexplained_ns(), -1.0);
     let rows = [useful].into_iter().chain(lost).chain([rest]);
     style::table(["thread-time", unit.name, "", "speed-up"], rows, 1..=3)
 }
 
 fn sum(row: &Row, unit: Unit) -> String {
-    let (explained, lost) = (row.losses.total_ns(), row.lost_ns);
+    let (explained, lost) = (row.lost_time.total_ns(), row.lost_ns);
     // Of next to nothing there is no percentage.
     let share = if lost.abs() < NOTABLE * row.thread_time_ns() {
         "less than 1 % of the thread-time".to_owned()
@@ -136,12 +136,12 @@ fn gaps(row: &Row) -> String {
 
 /// The largest cause, and what helps; unless chance is larger.
 fn advice(row: &Row) -> String {
-    let cause = row.losses.largest();
-    let share = row.losses.to(cause) / row.thread_time_ns();
+    let cause = row.lost_time.largest();
+    let share = row.lost_time.to(cause) / row.thread_time_ns();
     if share < NOTABLE {
         return "No cause takes 1 % of the thread-time.".to_owned();
     }
-    if row.unexplained_ns().abs() > row.losses.to(cause) {
+    if row.unexplained_ns().abs() > row.lost_time.to(cause) {
         return "No verdict: recorded and plain renderings differ by more than any cause takes. Measure longer \
                 (--time-limit), or on a quieter machine."
             .to_owned();

@@ -5,33 +5,33 @@ use super::*;
 use crate::compare::fixtures::noise;
 use rayweave_contract::Rect;
 use rayweave_measure::Interval;
-use rayweave_measure::efficiency::{Account, Losses};
+use rayweave_measure::efficiency::{TimeBreakdown, LostTime};
 use rayweave_measure::timeline::{self, Piece};
 use serde_json::Value;
 use std::collections::BTreeMap;
 
 const MS: f64 = 1e6;
 
-fn account(threads: usize, [busy, between, waiting, serial]: [f64; 4]) -> Account {
+fn breakdown(threads: usize, [busy, between, waiting, serial]: [f64; 4]) -> TimeBreakdown {
     let wall_ns = (busy + between + waiting + serial) * MS / threads as f64;
-    let [busy_ns, between_ns, waiting_ns, serial_ns] =
+    let [busy_ns, dispatch_ns, waiting_ns, serial_ns] =
         [busy, between, waiting, serial].map(|ms| ms * MS);
-    Account { threads, wall_ns, busy_ns, between_ns, waiting_ns, serial_ns }
+    TimeBreakdown { threads, wall_ns, busy_ns, dispatch_ns, waiting_ns, serial_ns }
 }
 
 fn piece((x, y, width, height): (u32, u32, u32, u32), begin_ns: u64, end_ns: u64) -> Piece {
     Piece { rect: Rect { x, y, width, height }, begin_ns, end_ns }
 }
 
-fn row(strategy: &'static str, threads: usize, together: Account, lanes: Vec<Lane>) -> Row {
+fn row(strategy: &'static str, threads: usize, together: TimeBreakdown, lanes: Vec<Lane>) -> Row {
     let (sequential, alone) =
-        (account(1, [98.0, 1.0, 0.0, 1.0]), account(1, [100.0, 1.5, 0.0, 1.0]));
+        (breakdown(1, [98.0, 1.0, 0.0, 1.0]), breakdown(1, [100.0, 1.5, 0.0, 1.0]));
     Row {
         strategy,
         threads,
         wall_ns: 60.0 * MS,
         lost_ns: threads as f64 * 60.0 * MS - 100.0 * MS,
-        losses: Losses::between(&sequential, &alone, &together),
+        lost_time: LostTime::new(&sequential, &alone, &together),
         recorded: Interval { median: 1.01, low: 0.99, high: 1.02 },
         long_gap_ns: 1500.0,
         timeline: Timeline { wall_ns: 10_000, lanes },
@@ -57,12 +57,12 @@ fn explanation() -> Explanation {
         reference: "sequential",
         reference_ns: 100.0 * MS,
         rows: vec![
-            row("queue", 2, account(2, [101.0, 2.0, 10.0, 5.8]), queue),
-            row("by-pixel", 3, account(3, [101.0, 2.0, 70.0, 5.0]), pixels),
+            row("queue", 2, breakdown(2, [101.0, 2.0, 10.0, 5.8]), queue),
+            row("by-pixel", 3, breakdown(3, [101.0, 2.0, 70.0, 5.0]), pixels),
         ],
         digest: Image::new(1, 1).expect("a pixel").digest(),
         rounds: 7,
-        cost: timeline::Cost { inside_ns: 30.4, outside_ns: 50.6 },
+        cost: timeline::RecordingCost { inside_ns: 30.4, outside_ns: 50.6 },
     }
 }
 
@@ -166,12 +166,12 @@ fn short_renderings_are_told_in_microseconds() {
 fn little_lost_is_said_to_be_little() {
     let (machine, noise) = (Machine::here(), noise());
     let mut explanation = explanation();
-    let mut row = row("queue", 1, account(1, [100.2, 1.0, 0.0, 1.0]), Vec::new());
+    let mut row = row("queue", 1, breakdown(1, [100.2, 1.0, 0.0, 1.0]), Vec::new());
     (row.wall_ns, row.lost_ns) = (100.5 * MS, 0.5 * MS);
-    row.losses = Losses::between(
-        &account(1, [100.0, 1.0, 0.0, 1.0]),
-        &account(1, [100.2, 1.0, 0.0, 1.0]),
-        &account(1, [100.2, 1.0, 0.0, 1.0]),
+    row.lost_time = LostTime::new(
+        &breakdown(1, [100.0, 1.0, 0.0, 1.0]),
+        &breakdown(1, [100.2, 1.0, 0.0, 1.0]),
+        &breakdown(1, [100.2, 1.0, 0.0, 1.0]),
     );
     explanation.rows = vec![row];
     let report = Report {
