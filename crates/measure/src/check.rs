@@ -8,8 +8,8 @@
 
 use crate::catch_panic::catch_panic;
 use crate::computing_threads::Rendezvous;
-use crate::finding::{Difference, Fault, Finding, Picture};
-use crate::recorder::{Record, Recorder};
+use crate::finding::{CheckedRender, Fault, Finding, ImageDifference};
+use crate::recorder::{Recorder, TileRecord};
 use crate::sentinel;
 use rayweave_contract::{Image, ImageError, Plan, Renderer, Rgb, Strategy, Threads, Work};
 use std::fmt;
@@ -21,7 +21,7 @@ use thiserror::Error;
 const REPETITIONS: usize = 2;
 
 /// A work and the size of the picture that is made of it.
-pub struct Case<'a> {
+pub struct CheckCase<'a> {
     /// What findings call it.
     pub name: String,
     /// In pixels.
@@ -42,7 +42,7 @@ pub struct Check<'a> {
     /// What has to give the same; the reference may be among them.
     pub strategies: &'a [&'a dyn Strategy],
     /// What is rendered.
-    pub cases: &'a [Case<'a>],
+    pub cases: &'a [CheckCase<'a>],
     /// Numbers of computing threads.
     pub threads: &'a [NonZeroUsize],
     /// Sides of a tile, in pixels.
@@ -54,7 +54,7 @@ pub struct Check<'a> {
 
 /// How far a check is; told before each rendering.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Progress {
+pub struct CheckProgress {
     /// The strategy that is being checked.
     pub strategy: &'static str,
     /// For so many computing threads.
@@ -124,7 +124,7 @@ impl<'a> Check<'a> {
     /// # Errors
     ///
     /// There is no reference picture to compare with.
-    pub fn run(&self, mut progress: impl FnMut(Progress)) -> Result<Verdict, CheckError> {
+    pub fn run(&self, mut progress: impl FnMut(CheckProgress)) -> Result<Verdict, CheckError> {
         let mut pairs = Vec::with_capacity(self.cases.len());
         for case in self.cases {
             pairs.push((case, self.reference_picture(case)?));
@@ -168,7 +168,7 @@ impl<'a> Check<'a> {
         }
     }
 
-    fn reference_picture(&self, case: &Case<'_>) -> Result<Image, CheckError> {
+    fn reference_picture(&self, case: &CheckCase<'_>) -> Result<Image, CheckError> {
         // Black, where every other picture starts as poison: what the reference fails to write
         // differs.
         let mut picture = Image::new(case.width, case.height)
@@ -184,11 +184,11 @@ impl<'a> Check<'a> {
 /// A check under way.
 struct Run<'a> {
     /// Each case with the reference's picture of it.
-    pairs: &'a [(&'a Case<'a>, Image)],
+    pairs: &'a [(&'a CheckCase<'a>, Image)],
     verdict: Verdict,
     done: usize,
     total: usize,
-    progress: &'a mut dyn FnMut(Progress),
+    progress: &'a mut dyn FnMut(CheckProgress),
 }
 
 impl Run<'_> {
@@ -204,7 +204,7 @@ impl Run<'_> {
             Ok(found) => Fault::Threads { expected: plan.threads.get(), found },
             Err(error) => Fault::Failed(error.to_string()),
         };
-        let picture = Picture {
+        let picture = CheckedRender {
             scene: "rendezvous".to_owned(),
             width: rendezvous.width,
             height: rendezvous.height,
@@ -225,7 +225,7 @@ impl Run<'_> {
         };
         for (case, expected) in self.pairs {
             for repetition in 0..REPETITIONS {
-                (self.progress)(Progress {
+                (self.progress)(CheckProgress {
                     strategy: strategy.name(),
                     threads: plan.threads.get(),
                     done: self.done + repetition,
@@ -237,7 +237,7 @@ impl Run<'_> {
                 if faults.is_empty() {
                     continue;
                 }
-                let picture = Picture {
+                let picture = CheckedRender {
                     scene: case.name.clone(),
                     width: case.width,
                     height: case.height,
@@ -258,7 +258,7 @@ impl Run<'_> {
         &mut self,
         strategy: &dyn Strategy,
         threads: NonZeroUsize,
-        picture: Option<Picture>,
+        picture: Option<CheckedRender>,
         fault: Fault,
     ) {
         let (strategy, threads) = (strategy.name(), threads.get());
@@ -298,13 +298,13 @@ fn too_many_threads(expected: usize, found: usize) -> Option<Fault> {
     (found > expected).then_some(Fault::Threads { expected, found })
 }
 
-fn difference(expected: &Image, found: &Image, record: &Record) -> Option<Fault> {
+fn difference(expected: &Image, found: &Image, record: &TileRecord) -> Option<Fault> {
     let pairs = expected.pixels().iter().zip(found.pixels());
     let mut differing =
         pairs.enumerate().filter(|(_, (expected, found))| !same_bits(**expected, **found));
     let (index, (&expected, &color)) = differing.next()?;
     let (x, y) = found.position(index);
-    Some(Fault::Different(Difference {
+    Some(Fault::Different(ImageDifference {
         pixels: 1 + differing.count(),
         x,
         y,
@@ -316,7 +316,7 @@ fn difference(expected: &Image, found: &Image, record: &Record) -> Option<Fault>
 
 /// Pixels computed several times, or written without being computed. Those that were not written
 /// either are a difference already.
-fn not_once(found: &Image, record: &Record) -> Option<Fault> {
+fn not_once(found: &Image, record: &TileRecord) -> Option<Fault> {
     let times = record.times_computed(found.width(), found.height());
     let mut wrong =
         times.iter().zip(found.pixels()).enumerate().filter(|(_, (times, color))| match **times {
@@ -333,8 +333,8 @@ fn same_bits(a: Rgb, b: Rgb) -> bool {
     a.map(f32::to_bits) == b.map(f32::to_bits)
 }
 
-impl fmt::Debug for Case<'_> {
+impl fmt::Debug for CheckCase<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "Case({}, {}x{})", self.name, self.width, self.height)
+        write!(f, "CheckCase({}, {}x{})", self.name, self.width, self.height)
     }
 }

@@ -75,7 +75,7 @@ pub trait Executor {
 
 /// How far a comparison is; told before each rendering, outside of any timed span.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Progress {
+pub struct CompareProgress {
     /// The strategy that comes next.
     pub strategy: &'static str,
     /// For so many computing threads.
@@ -151,7 +151,7 @@ impl Protocol {
         reference: &dyn Strategy,
         entries: &[Entry<'_>],
         executor: &mut dyn Executor,
-        progress: impl FnMut(Progress),
+        progress: impl FnMut(CompareProgress),
     ) -> Result<Comparison, CompareError> {
         // One executor, one comparison.
         Ok(self.run_together(reference, entries, &mut [executor], progress)?.swap_remove(0))
@@ -169,7 +169,7 @@ impl Protocol {
         reference: &dyn Strategy,
         entries: &[Entry<'_>],
         executors: &mut [&mut dyn Executor],
-        mut progress: impl FnMut(Progress),
+        mut progress: impl FnMut(CompareProgress),
     ) -> Result<Vec<Comparison>, CompareError> {
         let Some(first) = executors.first_mut() else { return Ok(Vec::new()) };
         let base = Entry { strategy: reference, threads: NonZeroUsize::MIN };
@@ -210,7 +210,7 @@ impl Protocol {
             if !running[table] || !row.passed() {
                 continue;
             }
-            progress(Progress {
+            progress(CompareProgress {
                 strategy: entry.strategy.name(),
                 threads: row.threads,
                 rounds: slot.round.unwrap_or(0),

@@ -7,7 +7,7 @@
 //! of the sequential rendering, of the strategy on one thread, and on all. Since an breakdown leaves
 //! nothing out, they add up to that exactly.
 
-use crate::timeline::{RecordingCost, Lane, Timeline};
+use crate::timeline::{RecordingCost, Timeline, TimelineLane};
 
 /// Where the thread-time of one rendering went; in nanoseconds, over all threads.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -119,7 +119,7 @@ impl TimeBreakdown {
 }
 
 impl Span {
-    fn of(lane: &Lane, cost: RecordingCost) -> Option<Self> {
+    fn of(lane: &TimelineLane, cost: RecordingCost) -> Option<Self> {
         let (first, last) = (lane.pieces.first()?, lane.pieces.last()?);
         let pieces = lane.pieces.len() as f64;
         let inside = pieces * cost.inside_ns;
@@ -134,7 +134,11 @@ impl LostTime {
     /// What a strategy loses `together`, on all its threads, by what it does `alone`, on one, and
     /// by what the `sequential` rendering does.
     #[must_use]
-    pub fn new(sequential: &TimeBreakdown, alone: &TimeBreakdown, together: &TimeBreakdown) -> Self {
+    pub fn new(
+        sequential: &TimeBreakdown,
+        alone: &TimeBreakdown,
+        together: &TimeBreakdown,
+    ) -> Self {
         Self(Cause::ALL.map(|cause| match cause {
             Cause::Redundant => alone.busy_ns - sequential.busy_ns,
             Cause::Slowdown => together.busy_ns - alone.busy_ns,
@@ -180,7 +184,7 @@ mod tests {
             begin_ns,
             end_ns,
         };
-        let lane = |pieces: &&[(u64, u64)]| Lane {
+        let lane = |pieces: &&[(u64, u64)]| TimelineLane {
             name: None,
             pieces: pieces.iter().map(piece).collect(),
         };
@@ -230,7 +234,8 @@ mod tests {
     /// Catches a cost that is taken off twice, for the last piece, or not off the whole.
     #[test]
     fn the_cost_of_recording_is_taken_off() {
-        let breakdown = TimeBreakdown::of(&uneven(), 2, RecordingCost { inside_ns: 2.0, outside_ns: 1.0 });
+        let breakdown =
+            TimeBreakdown::of(&uneven(), 2, RecordingCost { inside_ns: 2.0, outside_ns: 1.0 });
         // The threads end 5 and 8 earlier, and the rendering with the first of them.
         let expected = TimeBreakdown {
             threads: 2,
@@ -241,7 +246,8 @@ mod tests {
             serial_ns: 50.0,
         };
         assert_eq!(breakdown, expected);
-        let sum = breakdown.busy_ns + breakdown.dispatch_ns + breakdown.waiting_ns + breakdown.serial_ns;
+        let sum =
+            breakdown.busy_ns + breakdown.dispatch_ns + breakdown.waiting_ns + breakdown.serial_ns;
         assert_eq!(breakdown.thread_time_ns(), sum);
     }
 

@@ -8,7 +8,7 @@
 //! environments", 2016.
 
 use crate::catch_panic::catch_panic;
-use crate::efficiency::{TimeBreakdown, LostTime};
+use crate::efficiency::{LostTime, TimeBreakdown};
 use crate::in_process::nanoseconds;
 use crate::rounds::Protocol;
 use crate::sentinel;
@@ -24,7 +24,7 @@ mod tests;
 
 /// What is rendered, and against what.
 #[derive(Clone, Copy)]
-pub struct Experiment<'a> {
+pub struct ExplainExperiment<'a> {
     /// What every rendering computes.
     pub work: &'a dyn Work,
     /// Of the picture, in pixels.
@@ -62,7 +62,7 @@ pub struct Explanation {
     /// Its shortest time, in nanoseconds, not recorded.
     pub reference_ns: f64,
     /// In the order asked for.
-    pub rows: Vec<Row>,
+    pub rows: Vec<ExplainedStrategy>,
     /// Of every picture.
     pub digest: Digest,
     /// Rounds measured.
@@ -73,7 +73,7 @@ pub struct Explanation {
 
 /// What became of the efficiency of one strategy.
 #[derive(Clone, Debug)]
-pub struct Row {
+pub struct ExplainedStrategy {
     /// The strategy's name.
     pub strategy: &'static str,
     /// The threads it was given.
@@ -83,7 +83,7 @@ pub struct Row {
     /// What it loses of its thread-time, in nanoseconds, not recorded: threads times its time, less
     /// the reference's.
     pub lost_ns: f64,
-    /// To what. Their sum misses [`Row::lost_ns`] by what recorded and plain renderings differ in.
+    /// To what. Their sum misses [`ExplainedStrategy::lost_ns`] by what recorded and plain renderings differ in.
     pub lost_time: LostTime,
     /// Recorded over plain time, within a round.
     pub recorded: Interval,
@@ -93,7 +93,7 @@ pub struct Row {
     pub timeline: Timeline,
 }
 
-impl Row {
+impl ExplainedStrategy {
     /// Threads times time, in nanoseconds.
     #[must_use]
     pub fn thread_time_ns(&self) -> f64 {
@@ -147,7 +147,7 @@ struct Places {
     recorded: usize,
 }
 
-impl Experiment<'_> {
+impl ExplainExperiment<'_> {
     /// Explains `strategies` on `threads` threads each. `progress` is told how much is done, 0 to
     /// 1.
     ///
@@ -206,14 +206,18 @@ impl Experiment<'_> {
 }
 
 /// Takes the time line out of the series.
-fn row(series: &mut [Series<'_>], &Places { alone, plain, recorded }: &Places, cost: RecordingCost) -> Row {
+fn row(
+    series: &mut [Series<'_>],
+    &Places { alone, plain, recorded }: &Places,
+    cost: RecordingCost,
+) -> ExplainedStrategy {
     let threads = series[plain].threads.get();
     let wall_ns = series[plain].shortest_ns();
     // The first two are the reference's.
     let [sequential, on_one, on_all] =
         [1, alone, recorded].map(|place| series[place].breakdown(cost));
     let over_plain = ratio_interval(&series[recorded].wall_ns, &series[plain].wall_ns);
-    Row {
+    ExplainedStrategy {
         strategy: series[plain].strategy.name(),
         threads,
         wall_ns,
@@ -237,7 +241,7 @@ impl<'a> Series<'a> {
     /// Renders one picture, and takes note of it if it `counts`.
     fn render(
         &mut self,
-        experiment: &Experiment<'_>,
+        experiment: &ExplainExperiment<'_>,
         cost: RecordingCost,
         image: &mut Image,
         counts: bool,

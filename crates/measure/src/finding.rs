@@ -12,14 +12,14 @@ pub struct Finding {
     /// The number of computing threads asked for.
     pub threads: usize,
     /// The picture in which it shows; `None` where it is not about one.
-    pub picture: Option<Picture>,
+    pub picture: Option<CheckedRender>,
     /// What is wrong.
     pub fault: Fault,
 }
 
 /// One rendering of a check.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Picture {
+pub struct CheckedRender {
     /// The name of the work.
     pub scene: String,
     /// In pixels.
@@ -37,7 +37,7 @@ pub struct Picture {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Fault {
     /// The picture is not the reference's.
-    Different(Difference),
+    Different(ImageDifference),
     /// Pixels are right, or at least written, but were not computed exactly once.
     NotOnce {
         /// The number of such pixels.
@@ -62,7 +62,7 @@ pub enum Fault {
 
 /// Where a picture is not the reference's.
 #[derive(Clone, Debug)]
-pub struct Difference {
+pub struct ImageDifference {
     /// The number of differing pixels.
     pub pixels: usize,
     /// Column of the first.
@@ -78,7 +78,7 @@ pub struct Difference {
 }
 
 /// Bits are compared, so that a NaN equals itself.
-impl PartialEq for Difference {
+impl PartialEq for ImageDifference {
     fn eq(&self, other: &Self) -> bool {
         let bits = |color: Rgb| color.map(f32::to_bits);
         (self.pixels, self.x, self.y) == (other.pixels, other.x, other.y)
@@ -99,7 +99,7 @@ impl fmt::Display for Finding {
     }
 }
 
-impl fmt::Display for Picture {
+impl fmt::Display for CheckedRender {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} {}x{}, tiles of {}", self.scene, self.width, self.height, self.tile)?;
         if self.repetition > 1 { write!(f, ", rendered again") } else { Ok(()) }
@@ -131,7 +131,7 @@ impl fmt::Display for Fault {
     }
 }
 
-impl fmt::Display for Difference {
+impl fmt::Display for ImageDifference {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { pixels, x, y, expected, found, computation } = self;
         write!(
@@ -166,19 +166,27 @@ impl fmt::Display for Color {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recorder::Thread;
+    use crate::recorder::ComputingThread;
     use rayweave_contract::Rect;
 
     fn computation() -> Computation {
         let tile = Rect { x: 8, y: 16, width: 8, height: 4 };
-        Computation { tile, thread: Thread { index: 1, name: Some("tile-queue 0".to_owned()) } }
+        Computation {
+            tile,
+            thread: ComputingThread { index: 1, name: Some("tile-queue 0".to_owned()) },
+        }
     }
 
     #[test]
     fn a_difference_says_everything() {
-        let picture =
-            Picture { scene: "room".to_owned(), width: 97, height: 61, tile: 8, repetition: 2 };
-        let difference = Difference {
+        let picture = CheckedRender {
+            scene: "room".to_owned(),
+            width: 97,
+            height: 61,
+            tile: 8,
+            repetition: 2,
+        };
+        let difference = ImageDifference {
             pixels: 32,
             x: 9,
             y: 17,
@@ -199,7 +207,7 @@ mod tests {
              tile 8x4 at (8, 16) by thread 1 (\"tile-queue 0\")"
         );
         finding.fault =
-            Fault::Different(Difference { found: None, computation: None, ..difference });
+            Fault::Different(ImageDifference { found: None, computation: None, ..difference });
         assert!(finding.to_string().ends_with("found never written, computed by nobody"));
     }
 

@@ -51,7 +51,7 @@ pub struct Question<'a> {
 #[derive(Clone, Debug)]
 pub struct Forecast {
     /// One a strategy.
-    pub curves: Vec<Curve>,
+    pub curves: Vec<ForecastCurve>,
     /// Why strategies are missing.
     pub unavailable: Vec<String>,
     /// How many times as long as alone a thread takes beside others that share nothing with it, by
@@ -63,13 +63,13 @@ pub struct Forecast {
 
 /// A strategy on ever more threads.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Curve {
+pub struct ForecastCurve {
     /// Its name.
     pub strategy: &'static str,
     /// As measured here.
     pub overheads: Overheads,
     /// In the order of the numbers of threads asked for.
-    pub points: Vec<Point>,
+    pub points: Vec<ForecastPoint>,
     /// Of what the strategy makes of its own single thread, all points together; `None` of too few.
     pub amdahl: Option<Law>,
     /// As `amdahl`.
@@ -78,7 +78,7 @@ pub struct Curve {
 
 /// A strategy on a number of threads.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Point {
+pub struct ForecastPoint {
     /// The number of computing threads.
     pub threads: usize,
     /// As predicted, against the reference.
@@ -87,7 +87,7 @@ pub struct Point {
     pub measured: Option<Interval>,
 }
 
-impl Point {
+impl ForecastPoint {
     /// By what share the prediction is above what was measured.
     #[must_use]
     pub fn difference(&self) -> Option<f64> {
@@ -207,9 +207,9 @@ impl Question<'_> {
             let points = times.iter().map(|&(threads, time)| {
                 let row = find(&comparison, strategy.name(), threads);
                 let measured = row.and_then(|row| row.speedup);
-                Point { threads, predicted: reference / time, measured }
+                ForecastPoint { threads, predicted: reference / time, measured }
             });
-            Curve {
+            ForecastCurve {
                 strategy: strategy.name(),
                 overheads: *overheads,
                 points: points.collect(),
@@ -258,8 +258,8 @@ mod tests {
     #[test]
     fn a_difference_is_relative_to_what_was_measured() {
         let measured = Some(Interval { median: 1.6, low: 1.5, high: 1.7 });
-        let point = Point { threads: 2, predicted: 2.0, measured };
+        let point = ForecastPoint { threads: 2, predicted: 2.0, measured };
         assert_eq!(point.difference(), Some(0.25));
-        assert_eq!(Point { measured: None, ..point }.difference(), None);
+        assert_eq!(ForecastPoint { measured: None, ..point }.difference(), None);
     }
 }

@@ -41,7 +41,7 @@ mod timed_image;
 pub mod timeline;
 pub mod usage;
 
-pub use check::{Case, Check, Verdict};
+pub use check::{Check, CheckCase, Verdict};
 pub use compare::{Comparison, Entry};
 pub use finding::{Fault, Finding};
 pub use forecast::Forecast;

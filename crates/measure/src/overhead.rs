@@ -53,9 +53,9 @@ pub struct Overhead<'a> {
 
 /// Rows in the order of the strategies.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Study {
+pub struct OverheadStudy {
     /// One a strategy.
-    pub rows: Vec<Row>,
+    pub rows: Vec<OverheadRow>,
     /// Of the synthetic work, in nanoseconds.
     pub step_ns: f64,
     /// Rounds measured.
@@ -64,7 +64,7 @@ pub struct Study {
 
 /// A strategy, measured.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Row {
+pub struct OverheadRow {
     /// Its name.
     pub strategy: &'static str,
     /// What it computes at once.
@@ -72,12 +72,12 @@ pub struct Row {
     /// The number of computing threads.
     pub threads: usize,
     /// Or why there are none.
-    pub figures: Result<Figures, Failure>,
+    pub figures: Result<OverheadFigures, Failure>,
 }
 
 /// What a strategy costs; times in nanoseconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Figures {
+pub struct OverheadFigures {
     /// For each piece, on one thread; `None` for bands, of which there are as many as threads.
     pub dispatch_one: Option<Interval>,
     /// For each piece, on all threads, as the clock on the wall has it.
@@ -116,7 +116,7 @@ pub enum OverheadError {
     Reference(String),
 }
 
-impl Study {
+impl OverheadStudy {
     /// Whether every picture of synthetic work was right. A strategy that is not available draws
     /// none.
     #[must_use]
@@ -131,7 +131,7 @@ impl Overhead<'_> {
     /// # Errors
     ///
     /// The reference fails. Of any other strategy the row says why.
-    pub fn run(&self, mut progress: impl FnMut(&str, f64)) -> Result<Study, OverheadError> {
+    pub fn run(&self, mut progress: impl FnMut(&str, f64)) -> Result<OverheadStudy, OverheadError> {
         let begin = Instant::now();
         let mut workloads = Workloads::new(self.reference).map_err(OverheadError::Reference)?;
         let strategies: Vec<&dyn Strategy> =
@@ -160,14 +160,18 @@ impl Overhead<'_> {
         let reference = samples.next().unwrap_or_else(|| Ok(Samples::default()));
         let reference =
             reference.map_err(|failure| OverheadError::Reference(failure.to_string()))?;
-        let rows = samples.zip(self.strategies).map(|(samples, &strategy)| Row {
+        let rows = samples.zip(self.strategies).map(|(samples, &strategy)| OverheadRow {
             strategy: strategy.name(),
             granularity: strategy.policy().granularity,
             threads: self.threads_of(strategy).get(),
             figures: samples
                 .map(|samples| self.figures(strategy, &samples, &reference, workloads.step_ns)),
         });
-        Ok(Study { rows: rows.collect(), step_ns: workloads.step_ns, rounds: rounds.completed() })
+        Ok(OverheadStudy {
+            rows: rows.collect(),
+            step_ns: workloads.step_ns,
+            rounds: rounds.completed(),
+        })
     }
 
     fn threads_of(&self, strategy: &dyn Strategy) -> NonZeroUsize {
@@ -214,7 +218,7 @@ impl Overhead<'_> {
         samples: &Samples,
         reference: &Samples,
         step_ns: f64,
-    ) -> Figures {
+    ) -> OverheadFigures {
         let is_band = strategy.policy().granularity == Granularity::Band;
         let threads = self.threads_of(strategy).get();
         let interval = |of: fn(&Round) -> f64| {
@@ -238,7 +242,7 @@ impl Overhead<'_> {
             })
             .collect();
         let is_reference = strategy.name() == self.reference.name();
-        Figures {
+        OverheadFigures {
             dispatch_one: (!is_band).then(|| interval(|round| round.dispatch_one)),
             dispatch_all: (!is_band).then(|| interval(|round| round.dispatch_all)),
             metg: metg(&tasks, LEAST_EFFICIENCY),

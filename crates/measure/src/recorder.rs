@@ -16,13 +16,13 @@ pub struct Recorder<'a> {
 
 #[derive(Debug, Default)]
 struct Log {
-    threads: Vec<(ThreadId, Thread)>,
+    threads: Vec<(ThreadId, ComputingThread)>,
     computations: Vec<(Rect, usize)>,
 }
 
 /// A thread that computed.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Thread {
+pub struct ComputingThread {
     /// 0 for the first thread to complete a tile, 1 for the next other one, and so on.
     pub index: usize,
     /// Its name, where it has one.
@@ -35,12 +35,12 @@ pub struct Computation {
     /// As the work was asked for it: a single pixel for a strategy that deals in pixels.
     pub tile: Rect,
     /// Who computed it.
-    pub thread: Thread,
+    pub thread: ComputingThread,
 }
 
 /// What a [`Recorder`] saw of one rendering.
 #[derive(Debug)]
-pub struct Record {
+pub struct TileRecord {
     log: Log,
 }
 
@@ -53,8 +53,8 @@ impl<'a> Recorder<'a> {
 
     /// What was recorded.
     #[must_use]
-    pub fn finish(self) -> Record {
-        Record { log: self.log.into_inner().unwrap_or_else(PoisonError::into_inner) }
+    pub fn finish(self) -> TileRecord {
+        TileRecord { log: self.log.into_inner().unwrap_or_else(PoisonError::into_inner) }
     }
 }
 
@@ -73,13 +73,14 @@ impl Log {
         let known = self.threads.iter().position(|(id, _)| *id == this.id());
         known.unwrap_or_else(|| {
             let index = self.threads.len();
-            self.threads.push((this.id(), Thread { index, name: this.name().map(str::to_owned) }));
+            self.threads
+                .push((this.id(), ComputingThread { index, name: this.name().map(str::to_owned) }));
             index
         })
     }
 }
 
-impl Record {
+impl TileRecord {
     /// The number of threads that computed.
     #[must_use]
     pub fn threads(&self) -> usize {
@@ -163,7 +164,7 @@ impl fmt::Debug for Recorder<'_> {
     }
 }
 
-impl fmt::Display for Thread {
+impl fmt::Display for ComputingThread {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "thread {}", self.index)?;
         self.name.as_ref().map_or(Ok(()), |name| write!(f, " (\"{name}\")"))

@@ -23,12 +23,12 @@ pub struct Timeline {
     /// How long it took, in nanoseconds.
     pub wall_ns: u64,
     /// One for each thread that computed, in the order of their first pieces.
-    pub lanes: Vec<Lane>,
+    pub lanes: Vec<TimelineLane>,
 }
 
 /// What one thread computed.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Lane {
+pub struct TimelineLane {
     /// The thread's name, where it has one.
     pub name: Option<String>,
     /// In the order of time; one at least. No two overlap.
@@ -54,7 +54,7 @@ impl Timeline {
     }
 }
 
-impl Lane {
+impl TimelineLane {
     /// The time spent on pieces, in nanoseconds.
     #[must_use]
     pub fn busy_ns(&self) -> u64 {
@@ -151,9 +151,9 @@ impl<'a> TimeRecorder<'a> {
             }
             // There was room for more than there are.
             pieces.shrink_to_fit();
-            Lane { name, pieces }
+            TimelineLane { name, pieces }
         };
-        let mut lanes: Vec<Lane> = lanes.taken.into_iter().map(lane).collect();
+        let mut lanes: Vec<TimelineLane> = lanes.taken.into_iter().map(lane).collect();
         lanes.sort_by_key(|lane| lane.pieces.first().map(|piece| piece.begin_ns));
         Timeline { wall_ns: nanoseconds_between(begin, end), lanes }
     }
@@ -236,7 +236,8 @@ mod tests {
         render(&recorder, 1);
         let timeline = recorder.finish(begin, Instant::now());
 
-        let areas = |lane: &Lane| lane.pieces.iter().map(|piece| piece.rect.x).collect::<Vec<_>>();
+        let areas =
+            |lane: &TimelineLane| lane.pieces.iter().map(|piece| piece.rect.x).collect::<Vec<_>>();
         let [first, second] = &timeline.lanes[..] else { panic!("{timeline:?}") };
         assert_eq!((areas(first), areas(second)), (vec![0, 1], vec![10, 11, 12]));
         assert_eq!(second.name.as_deref(), Some("second"));
@@ -268,7 +269,8 @@ mod tests {
             begin_ns,
             end_ns,
         };
-        let lane = Lane { name: None, pieces: vec![piece(5, 8), piece(9, 20), piece(24, 25)] };
+        let lane =
+            TimelineLane { name: None, pieces: vec![piece(5, 8), piece(9, 20), piece(24, 25)] };
         assert_eq!((lane.busy_ns(), lane.pixels()), (15, 18));
         assert_eq!(lane.gaps_ns().collect::<Vec<_>>(), [1, 4]);
     }

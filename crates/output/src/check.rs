@@ -142,7 +142,7 @@ mod tests {
     use rayweave_measure::finding;
 
     fn verdict(findings: usize) -> Verdict {
-        let picture = finding::Picture {
+        let picture = finding::CheckedRender {
             scene: "room".to_owned(),
             width: 7,
             height: 3,

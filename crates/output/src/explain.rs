@@ -12,9 +12,9 @@ mod trace;
 use plotters::style::RGBColor;
 use rayweave_contract::{Image, ImageError};
 use rayweave_measure::efficiency::Cause;
-use rayweave_measure::explanation::{Explanation, Row};
+use rayweave_measure::explanation::{ExplainedStrategy, Explanation};
 use rayweave_measure::recorder::RayCost;
-use rayweave_measure::timeline::{Lane, Timeline};
+use rayweave_measure::timeline::{Timeline, TimelineLane};
 use rayweave_measure::{Machine, Noise};
 use serde::Serialize;
 
@@ -67,7 +67,7 @@ impl Report<'_> {
     /// # Errors
     ///
     /// It cannot be drawn.
-    pub fn timeline(&self, row: &Row) -> Result<String, String> {
+    pub fn timeline(&self, row: &ExplainedStrategy) -> Result<String, String> {
         timeline::svg(row)
     }
 
@@ -76,7 +76,7 @@ impl Report<'_> {
     /// # Errors
     ///
     /// It cannot be drawn.
-    pub fn cost(&self, row: &Row) -> Result<String, String> {
+    pub fn cost(&self, row: &ExplainedStrategy) -> Result<String, String> {
         map::cost(row, self.size)
     }
 
@@ -86,7 +86,7 @@ impl Report<'_> {
     /// # Errors
     ///
     /// There is no such picture.
-    pub fn owners(&self, row: &Row) -> Result<Image, ImageError> {
+    pub fn owners(&self, row: &ExplainedStrategy) -> Result<Image, ImageError> {
         Ok(map::owners(&row.timeline, Image::new(self.size.0, self.size.1)?))
     }
 }
@@ -114,12 +114,17 @@ struct Thread<'a> {
 
 impl<'a> Thread<'a> {
     /// Those of a row's time line.
-    fn all(row: &'a Row, rays: &RayCost<'_>) -> Vec<Self> {
+    fn all(row: &'a ExplainedStrategy, rays: &RayCost<'_>) -> Vec<Self> {
         let of = |lane| Self::of(lane, &row.timeline, row.long_gap_ns, rays);
         row.timeline.lanes.iter().map(of).collect()
     }
 
-    fn of(lane: &'a Lane, timeline: &Timeline, long_gap_ns: f64, rays: &RayCost<'_>) -> Self {
+    fn of(
+        lane: &'a TimelineLane,
+        timeline: &Timeline,
+        long_gap_ns: f64,
+        rays: &RayCost<'_>,
+    ) -> Self {
         let begin_ns = lane.pieces.first().map_or(0, |piece| piece.begin_ns);
         let end_ns = lane.pieces.last().map_or(0, |piece| piece.end_ns);
         let long_gaps = || lane.gaps_ns().filter(|&ns| ns as f64 > long_gap_ns);
@@ -141,7 +146,7 @@ impl<'a> Thread<'a> {
 
 /// The most that a thread computes over the mean of all that there are, in time; 1 is even, the
 /// number of threads is all on one.
-fn imbalance(row: &Row) -> f64 {
+fn imbalance(row: &ExplainedStrategy) -> f64 {
     let busy = || row.timeline.lanes.iter().map(|lane| lane.busy_ns() as f64);
     let mean = busy().sum::<f64>() / row.threads.max(1) as f64;
     if mean > 0.0 { busy().fold(0.0, f64::max) / mean } else { 1.0 }

@@ -4,7 +4,9 @@ use crate::json;
 use crate::machine;
 use crate::{noise, style};
 use rayweave_contract::Granularity;
-use rayweave_measure::overhead::{Figures, LARGEST_SIDE, PIXEL_NS, Row, Study, TASKS, TILE};
+use rayweave_measure::overhead::{
+    LARGEST_SIDE, OverheadFigures, OverheadRow, OverheadStudy, PIXEL_NS, TASKS, TILE,
+};
 use rayweave_measure::{Interval, Machine, Noise};
 use serde::Serialize;
 
@@ -33,7 +35,7 @@ const NONE: &str = "-";
 #[derive(Clone, Copy, Debug)]
 pub struct Report<'a> {
     /// What was measured.
-    pub study: &'a Study,
+    pub study: &'a OverheadStudy,
     /// What it was measured on.
     pub machine: &'a Machine,
     /// What else went on there.
@@ -44,7 +46,7 @@ impl Report<'_> {
     /// For people, without a newline at the end.
     #[must_use]
     pub fn table(&self) -> String {
-        let Study { rows, step_ns, rounds } = self.study;
+        let OverheadStudy { rows, step_ns, rounds } = self.study;
         let complaints = rows.iter().filter_map(|row| row.figures.as_ref().err());
         let mut lines = vec![
             format!("synthetic work, {rounds} interleaved rounds, every picture verified"),
@@ -72,7 +74,7 @@ impl Report<'_> {
     /// could not be measured is null, and `error` says why.
     #[must_use]
     pub fn json(&self) -> String {
-        let Study { rows, step_ns, rounds } = self.study;
+        let OverheadStudy { rows, step_ns, rounds } = self.study;
         json::text(&Object {
             schema: SCHEMA,
             rounds: *rounds,
@@ -87,7 +89,7 @@ impl Report<'_> {
     }
 }
 
-fn cells(row: &Row) -> [String; HEADER.len()] {
+fn cells(row: &OverheadRow) -> [String; HEADER.len()] {
     let piece = piece(row.granularity).to_owned();
     let [one, all, metg, side, prepare, first, later] = match &row.figures {
         Err(_) => std::array::from_fn(|_| NONE.to_owned()),
@@ -163,9 +165,9 @@ struct Item<'a> {
 }
 
 impl<'a> Item<'a> {
-    fn new(row: &'a Row) -> Self {
+    fn new(row: &'a OverheadRow) -> Self {
         let figures = row.figures.as_ref();
-        let interval = |of: fn(&Figures) -> Interval| figures.ok().map(of);
+        let interval = |of: fn(&OverheadFigures) -> Interval| figures.ok().map(of);
         Self {
             strategy: row.strategy,
             threads: row.threads,
@@ -188,9 +190,9 @@ mod tests {
     use crate::compare::fixtures::noise;
     use rayweave_measure::overhead::Failure;
 
-    fn study() -> Study {
+    fn study() -> OverheadStudy {
         let interval = |median| Interval { median, low: median - 1.0, high: median + 1.0 };
-        let figures = Figures {
+        let figures = OverheadFigures {
             dispatch_one: Some(interval(5.0)),
             dispatch_all: Some(interval(80.0)),
             metg: Some(234.0),
@@ -199,9 +201,13 @@ mod tests {
             first: interval(120_500.0),
             later: interval(8_000.0),
         };
-        let row =
-            |strategy, piece, figures| Row { strategy, granularity: piece, threads: 2, figures };
-        let bands = Figures {
+        let row = |strategy, piece, figures| OverheadRow {
+            strategy,
+            granularity: piece,
+            threads: 2,
+            figures,
+        };
+        let bands = OverheadFigures {
             dispatch_one: None,
             dispatch_all: None,
             metg: None,
@@ -217,7 +223,7 @@ mod tests {
                 Err(Failure::Preparing("none: unavailable here".to_owned())),
             ),
         ];
-        Study { rows, step_ns: 2.0, rounds: 7 }
+        OverheadStudy { rows, step_ns: 2.0, rounds: 7 }
     }
 
     #[test]

@@ -10,4 +10,4 @@ mod scheduler;
 pub mod simulation;
 
 pub use fit::Law;
-pub use simulation::{Access, Overheads, Run, simulate};
+pub use simulation::{Access, Overheads, SimulatedRender, simulate};

@@ -41,7 +41,7 @@ pub struct Access {
 
 /// A simulated rendering.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Run {
+pub struct SimulatedRender {
     /// What the rendering took, in nanoseconds.
     pub time: f64,
     /// What each thread computed, in nanoseconds.
@@ -54,7 +54,12 @@ pub struct Run {
 ///
 /// Of equal times the lower thread's comes first, so that the same input gives the same result.
 #[must_use]
-pub fn simulate(policy: Policy, threads: usize, pieces: &[f64], overheads: &Overheads) -> Run {
+pub fn simulate(
+    policy: Policy,
+    threads: usize,
+    pieces: &[f64],
+    overheads: &Overheads,
+) -> SimulatedRender {
     let threads = threads.max(1);
     let mut simulation = Simulation {
         policy,
@@ -78,7 +83,7 @@ pub fn simulate(policy: Policy, threads: usize, pieces: &[f64], overheads: &Over
             Step::Deliver => simulation.deliver(time, thread),
         }
     }
-    Run { time: overheads.start + simulation.end, computed: simulation.computed }
+    SimulatedRender { time: overheads.start + simulation.end, computed: simulation.computed }
 }
 
 struct Simulation<'a> {

@@ -6,7 +6,7 @@ use rayweave_contract::{
     Granularity, Image, Output, Plan, Policy, Rect, Renderer, Rgb, Scheduling, Strategy,
     StrategyError, Threads, Tile, Work, render_tile,
 };
-use rayweave_measure::{Case, Check, Fault, Finding};
+use rayweave_measure::{Check, CheckCase, Fault, Finding};
 use rayweave_registry::reference;
 use std::panic::resume_unwind;
 use std::sync::{Arc, Mutex};
@@ -93,7 +93,8 @@ fn findings_at(
     timeout: Duration,
     broken: impl Fn(Plan, &dyn Work, &mut Image) -> Rendered + Send + Sync + 'static,
 ) -> Vec<Finding> {
-    let cases = [Case { name: "gradient".to_owned(), width, height, work: Box::new(Gradient) }];
+    let cases =
+        [CheckCase { name: "gradient".to_owned(), width, height, work: Box::new(Gradient) }];
     let check = Check {
         reference: reference(),
         strategies: &[&Broken(Arc::new(broken))],

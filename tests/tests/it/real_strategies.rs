@@ -2,7 +2,7 @@
 
 use crate::gradient::{Gradient, PATIENCE, Panics, threads, tile};
 use rayweave_contract::{Image, Plan, Strategy, StrategyError, Threads, Tile, Work};
-use rayweave_measure::{Case, Check};
+use rayweave_measure::{Check, CheckCase};
 use rayweave_registry::{available, reference};
 use std::num::NonZeroUsize;
 use std::panic::resume_unwind;
@@ -16,7 +16,7 @@ const THREADS: [usize; 6] = [1, 2, 3, 5, 8, 64];
 #[test]
 fn the_real_strategies_agree() {
     let sizes = [(1, 1), (1, 500), (500, 1), (7, 3), (97, 61)];
-    let case = |(width, height)| Case {
+    let case = |(width, height)| CheckCase {
         name: "gradient".to_owned(),
         width,
         height,

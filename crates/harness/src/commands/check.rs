@@ -9,7 +9,7 @@ use crate::options::{
 use crate::{Outcome, print, progress};
 use clap::Args;
 use rayweave_contract::Strategy;
-use rayweave_measure::check::{Case, Check, Verdict};
+use rayweave_measure::check::{Check, CheckCase, Verdict};
 use rayweave_measure::computing_threads::TIMEOUT;
 use rayweave_measure::machine::Machine;
 use rayweave_output as report;
@@ -102,8 +102,8 @@ fn run_with_bar(check: &Check<'_>) -> Result<Verdict, String> {
     verdict.map_err(|e| e.to_string())
 }
 
-fn case(input: &Input, (width, height): (u32, u32)) -> Result<Case<'static>, String> {
-    Ok(Case { name: input.name.clone(), width, height, work: input.work(width, height)? })
+fn case(input: &Input, (width, height): (u32, u32)) -> Result<CheckCase<'static>, String> {
+    Ok(CheckCase { name: input.name.clone(), width, height, work: input.work(width, height)? })
 }
 
 fn or_default<T: Copy + PartialEq>(given: &[T], default: impl Iterator<Item = T>) -> Vec<T> {

@@ -12,7 +12,7 @@ use clap::Args;
 use rayweave_contract::{Rect, Strategy};
 use rayweave_core::primary_rays;
 use rayweave_measure::Protocol;
-use rayweave_measure::explanation::{Experiment, ExplainError};
+use rayweave_measure::explanation::{ExplainError, ExplainExperiment};
 use rayweave_output::explain::Report;
 use std::fs;
 use std::num::NonZeroUsize;
@@ -79,7 +79,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let tile = arguments.tile.of(width, height)?;
     let work = input.work(width, height)?;
     let protocol = Protocol { budget: PROTOCOL.budget * strategies.len() as u32, ..PROTOCOL };
-    let experiment = Experiment {
+    let experiment = ExplainExperiment {
         work: &*work,
         size: (width, height),
         tile,

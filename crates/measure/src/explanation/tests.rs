@@ -1,7 +1,7 @@
 //! Experiments with strategies of one thread that do as they are told, on a work that only fills.
 
 use super::*;
-use crate::timeline::{Lane, Piece};
+use crate::timeline::{Piece, TimelineLane};
 use rayweave_contract::{
     Granularity, Output, Policy, Rect, Renderer, Scheduling, StrategyError, Threads, Tile,
 };
@@ -75,7 +75,8 @@ fn explain(strategies: &[&dyn Strategy]) -> Result<Explanation, ExplainError> {
     let protocol =
         Protocol { min_rounds: 3, max_rounds: 3, budget: Duration::ZERO, goal: None, seed: 1 };
     let reference = &Obedience::AllOfThem;
-    let experiment = Experiment { work: &Grey, size: (5, 4), tile: SIDE, reference, protocol };
+    let experiment =
+        ExplainExperiment { work: &Grey, size: (5, 4), tile: SIDE, reference, protocol };
     experiment.run(strategies, NonZeroUsize::new(2).expect("not 0"), |_| ())
 }
 
@@ -121,7 +122,8 @@ fn only_what_is_shown_is_kept() {
     let protocol =
         Protocol { min_rounds: 1, max_rounds: 1, budget: Duration::ZERO, goal: None, seed: 1 };
     let reference = &Obedience::AllOfThem;
-    let experiment = Experiment { work: &Grey, size: (5, 4), tile: SIDE, reference, protocol };
+    let experiment =
+        ExplainExperiment { work: &Grey, size: (5, 4), tile: SIDE, reference, protocol };
     let free = RecordingCost { inside_ns: 0.0, outside_ns: 0.0 };
     let kept = |recording| {
         let mut series = Series::new(reference, NonZeroUsize::MIN, recording);
@@ -148,7 +150,7 @@ fn a_long_gap_is_longer_than_999_of_1000() {
     };
     // The first has no gap before it.
     let pieces = std::iter::once(50_000).chain((1..=2000).rev()).map(&mut after).collect();
-    let timeline = Timeline { wall_ns: 0, lanes: vec![Lane { name: None, pieces }] };
+    let timeline = Timeline { wall_ns: 0, lanes: vec![TimelineLane { name: None, pieces }] };
     // Of 2000 gaps two are as long as that or longer.
     assert_eq!(long_gap_ns(&timeline), 1999.0);
     assert_eq!(long_gap_ns(&Timeline::default()), 0.0);

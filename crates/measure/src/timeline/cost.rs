@@ -1,6 +1,6 @@
 //! What it costs to record.
 
-use super::{Lane, TimeRecorder};
+use super::{TimeRecorder, TimelineLane};
 use crate::statistics::median;
 use rayweave_contract::{Tile, Work};
 use std::time::Instant;
@@ -30,20 +30,20 @@ impl RecordingCost {
     /// Records work that does nothing. Takes a few milliseconds.
     #[must_use]
     pub fn here() -> Self {
-        let lanes: Vec<Lane> = (0..BATCHES).filter_map(|_| batch()).collect();
-        let per_piece = |of: fn(&Lane) -> u64| {
+        let lanes: Vec<TimelineLane> = (0..BATCHES).filter_map(|_| batch()).collect();
+        let per_piece = |of: fn(&TimelineLane) -> u64| {
             let means: Vec<f64> =
                 lanes.iter().map(|lane| of(lane) as f64 / f64::from(PIECES)).collect();
             median(&means).unwrap_or(0.0)
         };
         Self {
-            inside_ns: per_piece(Lane::busy_ns),
+            inside_ns: per_piece(TimelineLane::busy_ns),
             outside_ns: per_piece(|lane| lane.gaps_ns().sum()),
         }
     }
 }
 
-fn batch() -> Option<Lane> {
+fn batch() -> Option<TimelineLane> {
     let recorder = TimeRecorder::new(&Nothing, 1, PIECES as usize);
     let begin = Instant::now();
     (0..PIECES).for_each(|x| recorder.render(&mut Tile::pixel(x, 0, &mut [0.0; 3])));

@@ -3,7 +3,7 @@
 use super::{Report, Thread, imbalance};
 use crate::json;
 use rayweave_measure::efficiency::{Cause, LostTime};
-use rayweave_measure::explanation::Row;
+use rayweave_measure::explanation::ExplainedStrategy;
 use rayweave_measure::{Interval, Machine, Noise};
 use serde::Serialize;
 
@@ -73,7 +73,7 @@ pub(super) fn text(report: &Report<'_>) -> String {
     })
 }
 
-fn entry<'a>(report: &Report<'a>, row: &'a Row) -> Entry<'a> {
+fn entry<'a>(report: &Report<'a>, row: &'a ExplainedStrategy) -> Entry<'a> {
     Entry {
         strategy: row.strategy,
         threads: row.threads,

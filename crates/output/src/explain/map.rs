@@ -3,7 +3,7 @@
 use super::color;
 use plotters::prelude::*;
 use rayweave_contract::{Image, Rect};
-use rayweave_measure::explanation::Row;
+use rayweave_measure::explanation::ExplainedStrategy;
 use rayweave_measure::timeline::{Piece, Timeline};
 
 /// Of the drawing, in pixels: its longer side without the frame.
@@ -87,13 +87,13 @@ fn cells(timeline: &Timeline, (width, height): (u32, u32)) -> Vec<Cell> {
 }
 
 /// What each part of the picture cost, with its scale.
-pub(super) fn cost(row: &Row, size: (u32, u32)) -> Result<String, String> {
+pub(super) fn cost(row: &ExplainedStrategy, size: (u32, u32)) -> Result<String, String> {
     let mut text = String::new();
     draw(row, size, &mut text).map_err(|e| format!("the map of cost cannot be drawn: {e}"))?;
     Ok(text)
 }
 
-fn draw(row: &Row, (width, height): (u32, u32), text: &mut String) -> Drawn {
+fn draw(row: &ExplainedStrategy, (width, height): (u32, u32), text: &mut String) -> Drawn {
     let cells = cells(&row.timeline, (width, height));
     // Nothing takes no time: a clock may be too coarse to see it.
     let logarithm = |ns: f64| ns.max(1.0).log10();
@@ -170,14 +170,17 @@ fn viridis(share: f64) -> RGBColor {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rayweave_measure::timeline::Lane;
+    use rayweave_measure::timeline::TimelineLane;
 
     fn piece((x, y, width, height): (u32, u32, u32, u32), ns: u64) -> Piece {
         Piece { rect: Rect { x, y, width, height }, begin_ns: 100, end_ns: 100 + ns }
     }
 
     fn timeline(lanes: [Vec<Piece>; 2]) -> Timeline {
-        Timeline { wall_ns: 1000, lanes: lanes.map(|pieces| Lane { name: None, pieces }).to_vec() }
+        Timeline {
+            wall_ns: 1000,
+            lanes: lanes.map(|pieces| TimelineLane { name: None, pieces }).to_vec(),
+        }
     }
 
     /// Catches rows for columns, a neighbour's colour, and what reaches beyond the picture.

@@ -1,7 +1,7 @@
 //! A time line short enough to look at: single pixels, one after the other, become runs.
 
 use rayweave_contract::Rect;
-use rayweave_measure::timeline::{Lane, Piece};
+use rayweave_measure::timeline::{Piece, TimelineLane};
 
 /// A piece, or pixels that a thread computed from left to right without a long gap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,7 +15,7 @@ pub(super) struct Run {
 }
 
 /// The runs of a thread. Pieces of more than a pixel are runs of one.
-pub(super) fn of(lane: &Lane, long_gap_ns: f64) -> Vec<Run> {
+pub(super) fn of(lane: &TimelineLane, long_gap_ns: f64) -> Vec<Run> {
     let mut runs: Vec<Run> = Vec::new();
     for piece in &lane.pieces {
         match runs.last_mut() {
@@ -73,7 +73,7 @@ mod tests {
             piece((7, 1, 2, 1), 42, 43),
             piece((9, 1, 1, 1), 43, 44),
         ];
-        let runs = of(&Lane { name: None, pieces: pieces.clone() }, 5.0);
+        let runs = of(&TimelineLane { name: None, pieces: pieces.clone() }, 5.0);
         let rect = Rect { x: 3, y: 0, width: 3, height: 1 };
         assert_eq!(runs[0], Run { rect, begin_ns: 0, end_ns: 29, busy_ns: 24, pieces: 3 });
         assert_eq!(runs[1..], pieces[3..].iter().map(Run::from).collect::<Vec<_>>());

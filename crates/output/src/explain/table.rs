@@ -3,7 +3,7 @@
 use super::{Report, Thread, imbalance, label, name};
 use crate::{machine, noise, style};
 use rayweave_measure::efficiency::Cause;
-use rayweave_measure::explanation::{Explanation, Row};
+use rayweave_measure::explanation::{ExplainedStrategy, Explanation};
 
 /// A share of the thread-time below which nothing is worth a word.
 const NOTABLE: f64 = 0.01;
@@ -24,9 +24,9 @@ pub(super) fn text(report: &Report<'_>) -> String {
     lines.join("\n")
 }
 
-fn heading(explanation: &Explanation, row: &Row, unit: Unit) -> String {
+fn heading(explanation: &Explanation, row: &ExplainedStrategy, unit: Unit) -> String {
     let Explanation { reference, reference_ns, rounds, .. } = explanation;
-    let Row { strategy, threads, wall_ns, .. } = row;
+    let ExplainedStrategy { strategy, threads, wall_ns, .. } = row;
     let (speedup, name) = (reference_ns / wall_ns, unit.name);
     format!(
         "{strategy} on {threads} thread{}: {} {name}, {reference} {} {name}: speed-up {speedup:.2}, efficiency {:.0} %; \
@@ -39,7 +39,7 @@ fn heading(explanation: &Explanation, row: &Row, unit: Unit) -> String {
 }
 
 /// Where the thread-time goes.
-fn causes(explanation: &Explanation, row: &Row, unit: Unit) -> String {
+fn causes(explanation: &Explanation, row: &ExplainedStrategy, unit: Unit) -> String {
     let all = row.thread_time_ns();
     let cells = |label: &str, ns: f64, sign: f64| {
         let share = ns / all;
@@ -58,7 +58,7 @@ fn causes(explanation: &Explanation, row: &Row, unit: Unit) -> String {
     style::table(["thread-time", unit.name, "", "speed-up"], rows, 1..=3)
 }
 
-fn sum(row: &Row, unit: Unit) -> String {
+fn sum(row: &ExplainedStrategy, unit: Unit) -> String {
     let (explained, lost) = (row.lost_time.total_ns(), row.lost_ns);
     // Of next to nothing there is no percentage.
     let share = if lost.abs() < NOTABLE * row.thread_time_ns() {
@@ -74,7 +74,7 @@ fn sum(row: &Row, unit: Unit) -> String {
     )
 }
 
-fn recording(row: &Row) -> String {
+fn recording(row: &ExplainedStrategy) -> String {
     format!(
         "recorded renderings take {} times as long as plain ones",
         style::precise_interval(row.recorded)
@@ -82,7 +82,7 @@ fn recording(row: &Row) -> String {
 }
 
 /// What each thread does.
-fn threads(report: &Report<'_>, row: &Row, unit: Unit) -> String {
+fn threads(report: &Report<'_>, row: &ExplainedStrategy, unit: Unit) -> String {
     let timed = |what| format!("{what}\n{}", unit.name);
     let header = [
         "thread".to_owned(),
@@ -125,7 +125,7 @@ fn threads(report: &Report<'_>, row: &Row, unit: Unit) -> String {
     }
 }
 
-fn gaps(row: &Row) -> String {
+fn gaps(row: &ExplainedStrategy) -> String {
     format!(
         "imbalance: the busiest thread computes {:.2} times the mean. Long gaps: over {:.1} us between two pieces, \
          which one thread alone has once in 1000.",
@@ -135,7 +135,7 @@ fn gaps(row: &Row) -> String {
 }
 
 /// The largest cause, and what helps; unless chance is larger.
-fn advice(row: &Row) -> String {
+fn advice(row: &ExplainedStrategy) -> String {
     let cause = row.lost_time.largest();
     let share = row.lost_time.to(cause) / row.thread_time_ns();
     if share < NOTABLE {

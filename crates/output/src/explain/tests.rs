@@ -5,7 +5,7 @@ use super::*;
 use crate::compare::fixtures::noise;
 use rayweave_contract::Rect;
 use rayweave_measure::Interval;
-use rayweave_measure::efficiency::{TimeBreakdown, LostTime};
+use rayweave_measure::efficiency::{LostTime, TimeBreakdown};
 use rayweave_measure::timeline::{self, Piece};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -23,10 +23,15 @@ fn piece((x, y, width, height): (u32, u32, u32, u32), begin_ns: u64, end_ns: u64
     Piece { rect: Rect { x, y, width, height }, begin_ns, end_ns }
 }
 
-fn row(strategy: &'static str, threads: usize, together: TimeBreakdown, lanes: Vec<Lane>) -> Row {
+fn row(
+    strategy: &'static str,
+    threads: usize,
+    together: TimeBreakdown,
+    lanes: Vec<TimelineLane>,
+) -> ExplainedStrategy {
     let (sequential, alone) =
         (breakdown(1, [98.0, 1.0, 0.0, 1.0]), breakdown(1, [100.0, 1.5, 0.0, 1.0]));
-    Row {
+    ExplainedStrategy {
         strategy,
         threads,
         wall_ns: 60.0 * MS,
@@ -39,19 +44,19 @@ fn row(strategy: &'static str, threads: usize, together: TimeBreakdown, lanes: V
 }
 
 fn explanation() -> Explanation {
-    let named = |name: &str, pieces| Lane { name: Some(name.to_owned()), pieces };
+    let named = |name: &str, pieces| TimelineLane { name: Some(name.to_owned()), pieces };
     let queue = vec![
         named("queue 0", vec![piece((0, 0, 4, 2), 1000, 5000), piece((0, 2, 4, 2), 5010, 9000)]),
         named("queue 1", vec![piece((4, 0, 4, 2), 1500, 3000), piece((4, 2, 4, 2), 5000, 6000)]),
     ];
     let pixels = vec![
-        Lane {
+        TimelineLane {
             name: None,
             pieces: (0..8)
                 .map(|x| piece((x, 0, 1, 1), 500 * u64::from(x), 500 * u64::from(x) + 400))
                 .collect(),
         },
-        Lane { name: None, pieces: vec![piece((0, 1, 1, 1), 5, 1005)] },
+        TimelineLane { name: None, pieces: vec![piece((0, 1, 1, 1), 5, 1005)] },
     ];
     Explanation {
         reference: "sequential",

@@ -3,7 +3,7 @@
 use super::{color, label, runs, shaded};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use rayweave_measure::explanation::Row;
+use rayweave_measure::explanation::ExplainedStrategy;
 
 /// Of the whole drawing, in pixels.
 const WIDTH: u32 = 1200;
@@ -19,13 +19,13 @@ const IDLE: RGBColor = RGBColor(235, 235, 235);
 
 type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
 
-pub(super) fn svg(row: &Row) -> Result<String, String> {
+pub(super) fn svg(row: &ExplainedStrategy) -> Result<String, String> {
     let mut text = String::new();
     draw(row, &mut text).map_err(|e| format!("the time line cannot be drawn: {e}"))?;
     Ok(text)
 }
 
-fn draw(row: &Row, text: &mut String) -> Drawn {
+fn draw(row: &ExplainedStrategy, text: &mut String) -> Drawn {
     let timeline = &row.timeline;
     let lanes = timeline.lanes.len().max(row.threads);
     let height =

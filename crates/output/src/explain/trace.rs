@@ -4,7 +4,7 @@
 //! 0. Times are microseconds since the rendering began. Source: Google, "Trace Event Format".
 
 use super::{Report, label, runs};
-use rayweave_measure::explanation::Row;
+use rayweave_measure::explanation::ExplainedStrategy;
 use serde::Serialize;
 
 #[derive(Serialize)]
@@ -52,7 +52,7 @@ pub(super) fn text(report: &Report<'_>) -> String {
     serde_json::to_string(&trace).expect("plain structures are JSON")
 }
 
-fn events(pid: usize, row: &Row) -> Vec<Event<'_>> {
+fn events(pid: usize, row: &ExplainedStrategy) -> Vec<Event<'_>> {
     let named = |kind, tid, name: String| Event {
         name: kind,
         ph: Phase::Metadata,

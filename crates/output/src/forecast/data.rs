@@ -2,7 +2,7 @@
 
 use super::{ASSUMPTIONS, Report};
 use crate::json;
-use rayweave_measure::forecast::{Curve, Point};
+use rayweave_measure::forecast::{ForecastCurve, ForecastPoint};
 use rayweave_measure::{Interval, Machine, Noise};
 use rayweave_predict::{Law, Overheads};
 use serde::Serialize;
@@ -106,7 +106,7 @@ pub(super) fn json(report: &Report<'_>) -> String {
     })
 }
 
-fn item<'a>(strategy: &'a str, point: &Point) -> Item<'a> {
+fn item<'a>(strategy: &'a str, point: &ForecastPoint) -> Item<'a> {
     Item {
         strategy,
         threads: point.threads,
@@ -116,7 +116,7 @@ fn item<'a>(strategy: &'a str, point: &Point) -> Item<'a> {
     }
 }
 
-fn laws(curve: &Curve) -> Laws<'_> {
+fn laws(curve: &ForecastCurve) -> Laws<'_> {
     let Overheads { start, next_start, piece, take, deliver, steal } = curve.overheads;
     Laws {
         strategy: curve.strategy,

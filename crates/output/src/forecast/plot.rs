@@ -2,7 +2,7 @@
 
 use super::Report;
 use plotters::prelude::*;
-use rayweave_measure::forecast::Curve;
+use rayweave_measure::forecast::ForecastCurve;
 
 /// Of the whole plot, in pixels.
 const SIZE: (u32, u32) = (1100, 800);
@@ -77,7 +77,7 @@ fn draw(report: &Report<'_>, text: &mut String) -> Drawn {
 }
 
 /// The ranges that hold every point, with some room.
-fn axes(curves: &[Curve]) -> (std::ops::Range<f64>, std::ops::Range<f64>) {
+fn axes(curves: &[ForecastCurve]) -> (std::ops::Range<f64>, std::ops::Range<f64>) {
     let points = || curves.iter().flat_map(|curve| &curve.points);
     let range = |values: &dyn Fn() -> Vec<f64>| {
         let values = values();

@@ -3,7 +3,7 @@
 use super::{ASSUMPTIONS, Report};
 use crate::compare::complaint;
 use crate::{machine, noise, style};
-use rayweave_measure::forecast::{Curve, Point};
+use rayweave_measure::forecast::{ForecastCurve, ForecastPoint};
 
 const NONE: &str = "-";
 
@@ -27,7 +27,7 @@ fn heading(report: &Report<'_>) -> String {
     )
 }
 
-fn predictions(curves: &[Curve]) -> String {
+fn predictions(curves: &[ForecastCurve]) -> String {
     let threads = curves.first().map(|curve| &curve.points[..]).unwrap_or_default();
     let numbers = threads.iter().map(|point| point.threads.to_string());
     let laws = ["Amdahl:\nserial", "USL:\nsigma", "\nkappa", "\npeak"].map(str::to_owned);
@@ -44,7 +44,7 @@ fn predictions(curves: &[Curve]) -> String {
     style::table(header, rows, 1..=last)
 }
 
-fn laws_of(curve: &Curve) -> [String; 4] {
+fn laws_of(curve: &ForecastCurve) -> [String; 4] {
     let figure = |value: Option<String>| value.unwrap_or_else(|| NONE.to_owned());
     let peak = curve.usl.and_then(|law| law.peak()).map(|threads| format!("{threads:.0}"));
     [
@@ -71,7 +71,7 @@ fn laws_legend() -> &'static str {
 }
 
 /// Predictions beside what was measured; none where no number of threads asked for is here.
-fn checks(curves: &[Curve]) -> Option<String> {
+fn checks(curves: &[ForecastCurve]) -> Option<String> {
     let rows: Vec<[String; 5]> = curves
         .iter()
         .flat_map(|curve| curve.points.iter().filter_map(|point| check(curve, point)))
@@ -79,8 +79,11 @@ fn checks(curves: &[Curve]) -> Option<String> {
     if rows.is_empty() {
         return None;
     }
-    let differences: Vec<f64> =
-        curves.iter().flat_map(|curve| &curve.points).filter_map(Point::difference).collect();
+    let differences: Vec<f64> = curves
+        .iter()
+        .flat_map(|curve| &curve.points)
+        .filter_map(ForecastPoint::difference)
+        .collect();
     let within = differences.iter().filter(|difference| difference.abs() <= 0.05).count();
     let header = ["strategy", "threads", "predicted", "measured\n[95 % interval]", "difference"];
     Some(format!(
@@ -90,7 +93,7 @@ fn checks(curves: &[Curve]) -> Option<String> {
     ))
 }
 
-fn check(curve: &Curve, point: &Point) -> Option<[String; 5]> {
+fn check(curve: &ForecastCurve, point: &ForecastPoint) -> Option<[String; 5]> {
     Some([
         curve.strategy.to_owned(),
         point.threads.to_string(),

@@ -1,21 +1,21 @@
 use super::*;
 use crate::compare::fixtures::{noise, row};
 use rayweave_contract::Image;
-use rayweave_measure::forecast::{Curve, Point};
+use rayweave_measure::forecast::{ForecastCurve, ForecastPoint};
 use rayweave_measure::{Comparison, Interval, Measurement};
 use rayweave_predict::{Law, Overheads};
 use serde_json::Value;
 
 fn forecast() -> Forecast {
     let interval = |median| Interval { median, low: median - 0.1, high: median + 0.1 };
-    let point = |threads, predicted, measured: Option<f64>| Point {
+    let point = |threads, predicted, measured: Option<f64>| ForecastPoint {
         threads,
         predicted,
         measured: measured.map(interval),
     };
     let amdahl = Some(Law { serial: 0.02, crosstalk: 0.0, error: 0.011 });
     let usl = Some(Law { serial: 0.01, crosstalk: 0.0001, error: 0.004 });
-    let curve = |strategy, points, amdahl, usl| Curve {
+    let curve = |strategy, points, amdahl, usl| ForecastCurve {
         strategy,
         overheads: Overheads { start: 90.0, ..Overheads::default() },
         points,

@@ -11,7 +11,7 @@ fn in_place(scheduling: Scheduling) -> Policy {
     rule(scheduling, Output::InPlace)
 }
 
-fn free(scheduling: Scheduling, threads: usize, pieces: &[f64]) -> Run {
+fn free(scheduling: Scheduling, threads: usize, pieces: &[f64]) -> SimulatedRender {
     simulate(in_place(scheduling), threads, pieces, &Overheads::default())
 }
 
@@ -31,7 +31,10 @@ const PIECES: [f64; 8] = [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 9.0];
 
 #[test]
 fn equal_shares_wait_for_the_heaviest() {
-    assert_eq!(free(Scheduling::Static, 2, &PIECES), Run { time: 12.0, computed: vec![4.0, 12.0] });
+    assert_eq!(
+        free(Scheduling::Static, 2, &PIECES),
+        SimulatedRender { time: 12.0, computed: vec![4.0, 12.0] }
+    );
     // Of 8 pieces 3 threads get 2, 3 and 3.
     assert_eq!(free(Scheduling::Static, 3, &PIECES).computed, [2.0, 3.0, 11.0]);
     assert_eq!(free(Scheduling::Static, 16, &PIECES).time, 9.0);
@@ -40,7 +43,10 @@ fn equal_shares_wait_for_the_heaviest() {
 #[test]
 fn a_shared_counter_gives_to_who_is_free() {
     // Both compute one by one until 3; thread 0 then takes the last but one, thread 1 the last.
-    assert_eq!(free(ONE_BY_ONE, 2, &PIECES), Run { time: 12.0, computed: vec![4.0, 12.0] });
+    assert_eq!(
+        free(ONE_BY_ONE, 2, &PIECES),
+        SimulatedRender { time: 12.0, computed: vec![4.0, 12.0] }
+    );
     assert_eq!(free(ONE_BY_ONE, 2, &[9.0, 1.0, 1.0, 1.0]).computed, [9.0, 3.0]);
     // Chunks of 3: 0..3 and 3..6 until 3, then thread 0 gets both that are left.
     assert_eq!(free(Scheduling::Dynamic { chunk: 3 }, 2, &PIECES).computed, [13.0, 3.0]);
@@ -50,10 +56,16 @@ fn a_shared_counter_gives_to_who_is_free() {
 fn guided_takes_ever_fewer() {
     // 8 left: thread 0 takes 4; 4 left: thread 1 takes 2, until 2, then one of 2, until 3, then the
     // last, until 12.
-    assert_eq!(free(Scheduling::Guided, 2, &PIECES), Run { time: 12.0, computed: vec![4.0, 12.0] });
+    assert_eq!(
+        free(Scheduling::Guided, 2, &PIECES),
+        SimulatedRender { time: 12.0, computed: vec![4.0, 12.0] }
+    );
     let even = [1.0; 8];
     // 4 and 2 at 0; thread 1 takes one at 2 and one at 3.
-    assert_eq!(free(Scheduling::Guided, 2, &even), Run { time: 4.0, computed: vec![4.0, 4.0] });
+    assert_eq!(
+        free(Scheduling::Guided, 2, &even),
+        SimulatedRender { time: 4.0, computed: vec![4.0, 4.0] }
+    );
 }
 
 #[test]
@@ -65,7 +77,7 @@ fn the_idle_steal_half() {
     let late = [0.0, 0.0, 0.0, 0.0, 5.0, 5.0, 5.0, 5.0];
     assert_eq!(
         free(Scheduling::WorkStealing, 2, &late),
-        Run { time: 10.0, computed: vec![10.0, 10.0] }
+        SimulatedRender { time: 10.0, computed: vec![10.0, 10.0] }
     );
     let overheads = Overheads { steal: 0.5, ..Overheads::default() };
     assert_eq!(simulate(in_place(Scheduling::WorkStealing), 2, &late, &overheads).time, 10.5);
@@ -78,14 +90,14 @@ fn halves_are_stolen_whole_and_halved_again() {
     let even = [1.0; 8];
     assert_eq!(
         free(Scheduling::RecursiveSplit, 2, &even),
-        Run { time: 4.0, computed: vec![4.0, 4.0] }
+        SimulatedRender { time: 4.0, computed: vec![4.0, 4.0] }
     );
     // Two pieces of 6 each are one part: it is not divided, though the other thread is idle from 2
     // on.
     let pieces = [6.0, 6.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0];
     assert_eq!(
         free(Scheduling::RecursiveSplit, 2, &pieces),
-        Run { time: 12.0, computed: vec![12.0, 2.0] }
+        SimulatedRender { time: 12.0, computed: vec![12.0, 2.0] }
     );
     // Under stealing it would be.
     assert_eq!(free(Scheduling::WorkStealing, 2, &pieces).computed, [6.0, 8.0]);
@@ -150,7 +162,7 @@ fn no_pieces_take_the_start_alone() {
     for scheduling in ALL {
         assert_eq!(
             simulate(in_place(scheduling), 3, &[], &overheads),
-            Run { time: 7.0, computed: vec![0.0; 3] }
+            SimulatedRender { time: 7.0, computed: vec![0.0; 3] }
         );
     }
 }
