@@ -243,16 +243,16 @@ mod tests {
     /// and one of pieces where there is one a thread.
     #[test]
     fn bands_have_no_dispatch_and_one_thread_nobody_to_steal_from() {
-        let rule = |piece| Policy {
+        let policy = |piece| Policy {
             granularity: piece,
             scheduling: Scheduling::RecursiveSplit,
             output: Output::InPlace,
         };
         let faster = Times { together: [150.0, 300.0], ..times(10.0) };
         let expected = Overheads { start: 7.0, piece: 10.0, ..Overheads::default() };
-        assert_eq!(overheads(rule(Granularity::Pixel), 1, &faster), expected);
+        assert_eq!(overheads(policy(Granularity::Pixel), 1, &faster), expected);
         assert_eq!(
-            overheads(rule(Granularity::Band), 1, &faster),
+            overheads(policy(Granularity::Band), 1, &faster),
             Overheads { piece: 0.0, ..expected }
         );
     }
@@ -266,9 +266,9 @@ mod tests {
             (Scheduling::WorkStealing, 5),
             (Scheduling::RecursiveSplit, 2),
         ] {
-            let rule =
+            let policy =
                 Policy { granularity: Granularity::Tile, scheduling, output: Output::InPlace };
-            let found = price_of_theft(rule, threads, simulated_late(rule, threads, 100.0));
+            let found = price_of_theft(policy, threads, simulated_late(policy, threads, 100.0));
             assert!((found - 100.0).abs() < 1.0, "{scheduling:?}, {threads} threads: {found}");
         }
     }

@@ -1,8 +1,8 @@
 //! Proof that strategies agree: each against the reference, bit for bit.
 //!
 //! Every strategy is prepared for every number of threads and size of tile, and the renderer so
-//! prepared renders every picture twice: it has to draw the same picture again, and to be the same
-//! after pictures of other sizes. Before each rendering the picture is poisoned, so that a pixel
+//! prepared renders every image twice: it has to draw the same image again, and to be the same
+//! after images of other sizes. Before each rendering the image is poisoned, so that a pixel
 //! that nobody writes shows itself, and a [`Recorder`] around the work knows who computed what.
 //! That as many threads compute as were asked for, a [`Rendezvous`] shows.
 
@@ -17,10 +17,10 @@ use std::num::{NonZeroU32, NonZeroUsize};
 use std::time::Duration;
 use thiserror::Error;
 
-/// The times that a renderer draws each picture.
+/// The times that a renderer draws each image.
 const REPETITIONS: usize = 2;
 
-/// A work and the size of the picture that is made of it.
+/// A work and the size of the image that is made of it.
 pub struct CheckCase<'a> {
     /// What findings call it.
     pub name: String,
@@ -37,7 +37,7 @@ pub struct CheckCase<'a> {
 /// A strategy that starts no threads is checked as the one thread that it is.
 #[derive(Clone, Copy)]
 pub struct Check<'a> {
-    /// What gives the right picture.
+    /// What gives the right image.
     pub reference: &'a dyn Strategy,
     /// What has to give the same; the reference may be among them.
     pub strategies: &'a [&'a dyn Strategy],
@@ -70,19 +70,19 @@ pub struct CheckProgress {
 pub struct Verdict {
     /// What was checked.
     pub checked: Vec<Checked>,
-    /// The number of pictures that were compared with the reference.
+    /// The number of images that were compared with the reference.
     pub compared: usize,
     /// Everything that is wrong, strategy by strategy; empty when all agree.
     pub findings: Vec<Finding>,
 }
 
-/// What a [`Check`] was: every strategy with every number of threads, size of tile and picture.
+/// What a [`Check`] was: every strategy with every number of threads, size of tile and image.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Checked {
     /// Of the strategies.
     pub strategies: Vec<&'static str>,
     /// Name, width and height of each case.
-    pub pictures: Vec<(String, u32, u32)>,
+    pub images: Vec<(String, u32, u32)>,
     /// Numbers of computing threads.
     pub threads: Vec<usize>,
     /// Sides of a tile, in pixels.
@@ -92,7 +92,7 @@ pub struct Checked {
 /// Why nothing could be checked.
 #[derive(Debug, Error)]
 pub enum CheckError {
-    /// A case whose picture cannot be.
+    /// A case whose image cannot be.
     #[error("{name}: {source}")]
     Image {
         /// The case.
@@ -100,7 +100,7 @@ pub enum CheckError {
         /// The reason.
         source: ImageError,
     },
-    /// The reference gave no picture to compare with.
+    /// The reference gave no image to compare with.
     #[error("{name}: the reference failed: {message}")]
     Reference {
         /// The case.
@@ -123,11 +123,11 @@ impl<'a> Check<'a> {
     ///
     /// # Errors
     ///
-    /// There is no reference picture to compare with.
+    /// There is no reference image to compare with.
     pub fn run(&self, mut progress: impl FnMut(CheckProgress)) -> Result<Verdict, CheckError> {
         let mut pairs = Vec::with_capacity(self.cases.len());
         for case in self.cases {
-            pairs.push((case, self.reference_picture(case)?));
+            pairs.push((case, self.reference_image(case)?));
         }
         let settings =
             |strategy: &&dyn Strategy| self.threads_of(*strategy).len() * self.tiles.len();
@@ -150,7 +150,7 @@ impl<'a> Check<'a> {
     fn checked(&self) -> Checked {
         Checked {
             strategies: self.strategies.iter().map(|strategy| strategy.name()).collect(),
-            pictures: self
+            images: self
                 .cases
                 .iter()
                 .map(|case| (case.name.clone(), case.width, case.height))
@@ -168,22 +168,22 @@ impl<'a> Check<'a> {
         }
     }
 
-    fn reference_picture(&self, case: &CheckCase<'_>) -> Result<Image, CheckError> {
-        // Black, where every other picture starts as poison: what the reference fails to write
+    fn reference_image(&self, case: &CheckCase<'_>) -> Result<Image, CheckError> {
+        // Black, where every other image starts as poison: what the reference fails to write
         // differs.
-        let mut picture = Image::new(case.width, case.height)
+        let mut image = Image::new(case.width, case.height)
             .map_err(|source| CheckError::Image { name: case.name.clone(), source })?;
         let tile = self.tiles.first().copied().unwrap_or(NonZeroU32::MIN);
         let plan = Plan { threads: NonZeroUsize::MIN, tile };
-        catch_panic(|| self.reference.prepare(plan)?.render(&*case.work, &mut picture))
+        catch_panic(|| self.reference.prepare(plan)?.render(&*case.work, &mut image))
             .map_err(|message| CheckError::Reference { name: case.name.clone(), message })?;
-        Ok(picture)
+        Ok(image)
     }
 }
 
 /// A check under way.
 struct Run<'a> {
-    /// Each case with the reference's picture of it.
+    /// Each case with the reference's image of it.
     pairs: &'a [(&'a CheckCase<'a>, Image)],
     verdict: Verdict,
     done: usize,
@@ -204,14 +204,14 @@ impl Run<'_> {
             Ok(found) => Fault::Threads { expected: plan.threads.get(), found },
             Err(error) => Fault::Failed(error.to_string()),
         };
-        let picture = CheckedRender {
+        let render = CheckedRender {
             scene: "rendezvous".to_owned(),
             width: rendezvous.width,
             height: rendezvous.height,
             tile: rendezvous.plan.tile.get(),
             repetition: 1,
         };
-        self.found(strategy, plan.threads, Some(picture), fault);
+        self.found(strategy, plan.threads, Some(render), fault);
         false
     }
 
@@ -237,7 +237,7 @@ impl Run<'_> {
                 if faults.is_empty() {
                     continue;
                 }
-                let picture = CheckedRender {
+                let render = CheckedRender {
                     scene: case.name.clone(),
                     width: case.width,
                     height: case.height,
@@ -245,7 +245,7 @@ impl Run<'_> {
                     repetition: repetition + 1,
                 };
                 for fault in faults {
-                    self.found(strategy, plan.threads, Some(picture.clone()), fault);
+                    self.found(strategy, plan.threads, Some(render.clone()), fault);
                 }
                 // What is wrong already need not be shown to be wrong again.
                 break;
@@ -258,15 +258,15 @@ impl Run<'_> {
         &mut self,
         strategy: &dyn Strategy,
         threads: NonZeroUsize,
-        picture: Option<CheckedRender>,
+        render: Option<CheckedRender>,
         fault: Fault,
     ) {
         let (strategy, threads) = (strategy.name(), threads.get());
-        self.verdict.findings.push(Finding { strategy, threads, picture, fault });
+        self.verdict.findings.push(Finding { strategy, threads, render, fault });
     }
 }
 
-/// Renders into a poisoned picture and says what is wrong with it, if anything.
+/// Renders into a poisoned image and says what is wrong with it, if anything.
 fn render_and_compare(
     renderer: &mut dyn Renderer,
     threads: NonZeroUsize,
@@ -281,7 +281,7 @@ fn render_and_compare(
     }
     if (found.width(), found.height()) != (expected.width(), expected.height()) {
         let message =
-            format!("the picture was replaced by one of {}x{}", found.width(), found.height());
+            format!("the image was replaced by one of {}x{}", found.width(), found.height());
         return vec![Fault::Failed(message)];
     }
     let record = recorder.finish();

@@ -1,4 +1,4 @@
-//! The timing protocol: interleaved rounds in which every timed picture is verified.
+//! The timing protocol: interleaved rounds in which every timed image is verified.
 //!
 //! * In each round every row is measured once, as [`rounds`](crate::rounds) has it.
 //! * A speed-up is the median over the rounds of the ratio to the reference in the same round.
@@ -6,12 +6,12 @@
 //!   what its interval says instead is the error of the whole table.
 //! * Before the rounds each row renders once without being timed, and is verified; its rays are
 //!   counted then.
-//! * Preparing, poisoning the picture and verifying it lie outside of the timed span.
-//! * A row that fails, or gives another picture than the reference, is measured no further and gets
+//! * Preparing, poisoning the image and verifying it lie outside of the timed span.
+//! * A row that fails, or gives another image than the reference, is measured no further and gets
 //!   no figures; its samples so far stay. If it is the reference itself, no row gets figures.
 //! * A measurement that is [interrupted](Executor::is_interrupted) ends at once, and is of the
 //!   complete rounds before.
-//! * Several works that give the same picture are measured [together](Protocol::run_together):
+//! * Several works that give the same image are measured [together](Protocol::run_together):
 //!   their rows take their turns in the same rounds, so times of one over times of another are
 //!   ratios within a round too.
 //!
@@ -102,7 +102,7 @@ pub struct Comparison {
 /// Why nothing could be compared.
 #[derive(Debug, Error)]
 pub enum CompareError {
-    /// There is no picture to verify the others with.
+    /// There is no image to verify the others with.
     #[error("the reference failed: {0}")]
     Reference(String),
     /// There are too few samples for an interval.
@@ -145,7 +145,7 @@ impl Protocol {
     ///
     /// # Errors
     ///
-    /// There is no reference picture, or it was interrupted too early.
+    /// There is no reference image, or it was interrupted too early.
     pub fn run(
         &self,
         reference: &dyn Strategy,
@@ -158,12 +158,12 @@ impl Protocol {
     }
 
     /// A comparison for each executor, as by [`Protocol::run`] but measured in the same rounds.
-    /// Each renders a work of its own, and all have to give the picture that the first gives with
+    /// Each renders a work of its own, and all have to give the image that the first gives with
     /// `reference`.
     ///
     /// # Errors
     ///
-    /// There is no reference picture, or it was interrupted too early.
+    /// There is no reference image, or it was interrupted too early.
     pub fn run_together(
         &self,
         reference: &dyn Strategy,

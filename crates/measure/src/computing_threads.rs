@@ -31,7 +31,7 @@ pub enum CountError {
     /// The strategy failed.
     #[error("{0}")]
     Strategy(String),
-    /// So many threads that there is no picture with a tile for each.
+    /// So many threads that there is no image with a tile for each.
     #[error(transparent)]
     Image(#[from] ImageError),
 }
@@ -39,10 +39,10 @@ pub enum CountError {
 /// What the threads of a plan meet over: a column of two tiles for each.
 ///
 /// So each thread gets some, and something is left over for a surplus thread, whether a strategy
-/// deals out pixels, rows or tiles; a strategy that deals out columns would need another picture.
+/// deals out pixels, rows or tiles; a strategy that deals out columns would need another image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rendezvous {
-    /// What is prepared for: the plan, but with tiles of which there is a picture within bounds.
+    /// What is prepared for: the plan, but with tiles of which there is an image within bounds.
     pub plan: Plan,
     /// In pixels: a tile's, or less where that would be too many pixels.
     pub width: u32,
@@ -69,7 +69,7 @@ impl Rendezvous {
     ///
     /// # Errors
     ///
-    /// The strategy failed, or there is no picture with enough tiles.
+    /// The strategy failed, or there is no image with enough tiles.
     pub fn computing_threads(
         &self,
         strategy: &dyn Strategy,
@@ -212,7 +212,7 @@ mod tests {
                 };
                 let Rendezvous { plan: Plan { tile: side, .. }, width, height } =
                     Rendezvous::of(plan);
-                let mut image = Image::new(width, height).expect("a picture");
+                let mut image = Image::new(width, height).expect("an image");
                 assert_eq!(image.tiles(side).len(), 2 * threads, "{plan:?}");
                 assert!(width * height <= MAX_PIXELS, "{plan:?}: {width} x {height}");
                 assert!(side.get() == tile || tile >= 1000, "{plan:?}: {side}");

@@ -27,7 +27,7 @@ mod tests;
 pub struct ExplainExperiment<'a> {
     /// What every rendering computes.
     pub work: &'a dyn Work,
-    /// Of the picture, in pixels.
+    /// Of the image, in pixels.
     pub size: (u32, u32),
     /// The side of a tile, in pixels.
     pub tile: NonZeroU32,
@@ -40,14 +40,14 @@ pub struct ExplainExperiment<'a> {
 /// Why nothing was explained.
 #[derive(Debug, Error)]
 pub enum ExplainError {
-    /// There is no such picture.
+    /// There is no such image.
     #[error(transparent)]
     Image(#[from] ImageError),
     /// A strategy failed.
     #[error("{0}")]
     Failed(String),
     /// Its times would mean nothing.
-    #[error("{strategy}: drew another picture than the reference (see `rayweave check`)")]
+    #[error("{strategy}: drew another image than the reference (see `rayweave check`)")]
     Different {
         /// The strategy's name.
         strategy: &'static str,
@@ -63,7 +63,7 @@ pub struct Explanation {
     pub reference_ns: f64,
     /// In the order asked for.
     pub rows: Vec<ExplainedStrategy>,
-    /// Of every picture.
+    /// Of every image.
     pub digest: Digest,
     /// Rounds measured.
     pub rounds: usize,
@@ -153,7 +153,7 @@ impl ExplainExperiment<'_> {
     ///
     /// # Errors
     ///
-    /// A strategy fails, or draws another picture than the reference.
+    /// A strategy fails, or draws another image than the reference.
     pub fn run(
         &self,
         strategies: &[&dyn Strategy],
@@ -238,7 +238,7 @@ impl<'a> Series<'a> {
         Self { strategy, threads, recording, room: 0, wall_ns: Vec::new(), quickest: None }
     }
 
-    /// Renders one picture, and takes note of it if it `counts`.
+    /// Renders one image, and takes note of it if it `counts`.
     fn render(
         &mut self,
         experiment: &ExplainExperiment<'_>,

@@ -11,8 +11,8 @@ pub struct Finding {
     pub strategy: &'static str,
     /// The number of computing threads asked for.
     pub threads: usize,
-    /// The picture in which it shows; `None` where it is not about one.
-    pub picture: Option<CheckedRender>,
+    /// The image in which it shows; `None` where it is not about one.
+    pub render: Option<CheckedRender>,
     /// What is wrong.
     pub fault: Fault,
 }
@@ -28,15 +28,15 @@ pub struct CheckedRender {
     pub height: u32,
     /// The side of a tile, in pixels.
     pub tile: u32,
-    /// 1, or 2 for the same picture rendered once more by the same renderer.
+    /// 1, or 2 for the same image rendered once more by the same renderer.
     pub repetition: usize,
 }
 
-/// What is wrong. Pixels are counted over the whole picture; the first is the first in reading
+/// What is wrong. Pixels are counted over the whole image; the first is the first in reading
 /// order.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Fault {
-    /// The picture is not the reference's.
+    /// The image is not the reference's.
     Different(ImageDifference),
     /// Pixels are right, or at least written, but were not computed exactly once.
     NotOnce {
@@ -60,7 +60,7 @@ pub enum Fault {
     Failed(String),
 }
 
-/// Where a picture is not the reference's.
+/// Where an image is not the reference's.
 #[derive(Clone, Debug)]
 pub struct ImageDifference {
     /// The number of differing pixels.
@@ -92,8 +92,8 @@ impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let plural = if self.threads == 1 { "" } else { "s" };
         write!(f, "{}, {} thread{plural}", self.strategy, self.threads)?;
-        if let Some(picture) = &self.picture {
-            write!(f, ", {picture}")?;
+        if let Some(render) = &self.render {
+            write!(f, ", {render}")?;
         }
         write!(f, ": {}", self.fault)
     }
@@ -179,7 +179,7 @@ mod tests {
 
     #[test]
     fn a_difference_says_everything() {
-        let picture = CheckedRender {
+        let render = CheckedRender {
             scene: "room".to_owned(),
             width: 97,
             height: 61,
@@ -197,7 +197,7 @@ mod tests {
         let mut finding = Finding {
             strategy: "tile-queue",
             threads: 2,
-            picture: Some(picture),
+            render: Some(render),
             fault: Fault::Different(difference.clone()),
         };
         assert_eq!(
@@ -214,7 +214,7 @@ mod tests {
     #[test]
     fn the_other_faults() {
         let finding =
-            |fault| Finding { strategy: "one", threads: 1, picture: None, fault }.to_string();
+            |fault| Finding { strategy: "one", threads: 1, render: None, fault }.to_string();
         assert_eq!(
             finding(Fault::Threads { expected: 1, found: 2 }),
             "one, 1 thread: computing threads: expected 1, found 2"

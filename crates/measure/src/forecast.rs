@@ -1,11 +1,11 @@
-//! What more threads would make of a picture, from measured costs, and beside it what the threads
+//! What more threads would make of an image, from measured costs, and beside it what the threads
 //! here make of it.
 //!
 //! * Every strategy is timed on the numbers of threads that this machine has, by the
 //!   [protocol](crate::compare) of a comparison.
-//! * In the same rounds [independent](crate::independent) threads draw the whole picture each: so
+//! * In the same rounds [independent](crate::independent) threads draw the whole image each: so
 //!   much slower is every piece taken to be beside other threads.
-//! * And in the same rounds one thread draws the picture [piece by piece](crate::piece_costs) and
+//! * And in the same rounds one thread draws the image [piece by piece](crate::piece_costs) and
 //!   times each.
 //! * The costs of [threads](crate::calibration) are measured apart, before.
 //! * From these alone the [simulation](rayweave_predict) predicts all speed-ups. Nothing of it is
@@ -31,7 +31,7 @@ use thiserror::Error;
 pub struct Question<'a> {
     /// What is rendered.
     pub work: &'a dyn Work,
-    /// Of the picture, in pixels.
+    /// Of the image, in pixels.
     pub size: (u32, u32),
     /// The side of a tile, in pixels.
     pub tile: NonZeroU32,
@@ -83,7 +83,7 @@ pub struct ForecastPoint {
     pub threads: usize,
     /// As predicted, against the reference.
     pub predicted: f64,
-    /// As measured; `None` for more threads than here, and where pictures were wrong.
+    /// As measured; `None` for more threads than here, and where images were wrong.
     pub measured: Option<Interval>,
 }
 
@@ -110,7 +110,7 @@ pub enum ForecastError {
     /// There is nothing to compare with.
     #[error(transparent)]
     Compare(#[from] CompareError),
-    /// There is no such picture.
+    /// There is no such image.
     #[error(transparent)]
     Image(#[from] ImageError),
     /// What a strategy says.
@@ -129,7 +129,7 @@ impl Question<'_> {
     ///
     /// # Errors
     ///
-    /// No picture of this size, no strategy that starts threads, or one that fails though it could
+    /// No image of this size, no strategy that starts threads, or one that fails though it could
     /// be prepared.
     pub fn answer(&self, mut progress: impl FnMut(Stage, f64)) -> Result<Forecast, ForecastError> {
         let mut unavailable = Vec::new();

@@ -235,7 +235,7 @@ mod tests {
     }
 
     /// Catches a count by the plan's tiles instead of those that were cut, one in the timed
-    /// renderings, and a need other than the whole picture's.
+    /// renderings, and a need other than the whole image's.
     #[test]
     fn the_warm_up_counts_the_tiles_that_were_cut() {
         let asked = AtomicUsize::new(0);
@@ -246,8 +246,8 @@ mod tests {
         let plan = NonZeroU32::new(100).expect("not 0");
         let entry = Entry { strategy: &ByTwos, threads: NonZeroUsize::MIN };
         let mut executor =
-            InProcessExecutor::new(&Grey, 5, 4, plan).expect("a picture").counting(&rays);
-        // Four tiles of 2 x 2 and two of 1 x 2; the whole picture is 5 x 4.
+            InProcessExecutor::new(&Grey, 5, 4, plan).expect("an image").counting(&rays);
+        // Four tiles of 2 x 2 and two of 1 x 2; the whole image is 5 x 4.
         let (primary, needed) = (4 * 9 + 2 * 6, 6 * 5);
         let counted = executor.warm_up(&entry).expect("rendered");
         assert_eq!(
@@ -258,16 +258,16 @@ mod tests {
         assert_eq!(executor.render(&entry).map(|again| again.digest), Ok(counted.digest));
         assert_eq!(asked.load(Ordering::Relaxed), before, "counted in a timed rendering");
 
-        let mut executor = InProcessExecutor::new(&Grey, 5, 4, plan).expect("a picture");
+        let mut executor = InProcessExecutor::new(&Grey, 5, 4, plan).expect("an image");
         assert_eq!(executor.warm_up(&entry).map(|sample| sample.primary_rays), Ok(None));
     }
 
-    /// Catches a first picture that passes for the second, and spans that are taken at the wrong
+    /// Catches a first image that passes for the second, and spans that are taken at the wrong
     /// places.
     #[test]
     fn a_cold_rendering_is_prepared_and_rendered_and_then_rendered_again() {
         let entry = Entry { strategy: &ByTwos, threads: NonZeroUsize::MIN };
-        let mut executor = InProcessExecutor::new(&Grey, 3, 2, NonZeroU32::MIN).expect("a picture");
+        let mut executor = InProcessExecutor::new(&Grey, 3, 2, NonZeroU32::MIN).expect("an image");
         let sample = executor.cold_and_warm(&entry).expect("rendered");
         assert_eq!(sample.cold_digest, Some(sample.digest));
         assert!(sample.cold_ns.expect("a first one") > sample.prepare_ns);
@@ -279,14 +279,14 @@ mod tests {
         assert_eq!((cold_digest, tires.prepared.load(Ordering::Relaxed)), (Some(digest), 1));
         let Sample { digest: again, cold_digest, .. } =
             executor.cold_and_warm(&entry).expect("nothing");
-        assert!(again != digest && cold_digest == Some(again), "an earlier picture");
+        assert!(again != digest && cold_digest == Some(again), "an earlier image");
     }
 
     #[test]
-    fn an_earlier_picture_does_not_pass_for_a_later_one() {
-        let mut executor = InProcessExecutor::new(&Grey, 3, 2, NonZeroU32::MIN).expect("a picture");
+    fn an_earlier_image_does_not_pass_for_a_later_one() {
+        let mut executor = InProcessExecutor::new(&Grey, 3, 2, NonZeroU32::MIN).expect("an image");
         let entry = Entry { strategy: &Tires::default(), threads: NonZeroUsize::MIN };
-        let right = Image::filled(3, 2, GREY).expect("a picture").digest();
+        let right = Image::filled(3, 2, GREY).expect("an image").digest();
         assert_eq!(executor.render(&entry).map(|rendering| rendering.digest), Ok(right));
         assert_ne!(executor.render(&entry).map(|rendering| rendering.digest), Ok(right));
         let error = executor.render(&entry).expect_err("tired");

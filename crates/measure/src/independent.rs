@@ -1,4 +1,4 @@
-//! What cores cost each other: threads that share nothing, each of which draws the whole picture.
+//! What cores cost each other: threads that share nothing, each of which draws the whole image.
 
 use crate::in_process::nanoseconds;
 use crate::statistics::{Interval, ratio_interval};
@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 
 const NAME: &str = "independent";
 
-/// No way to share work: with N threads the picture is drawn N times. How much longer that takes
+/// No way to share work: with N threads the image is drawn N times. How much longer that takes
 /// than once is what the machine's cores cost each other.
 #[derive(Debug, Default)]
 pub struct Independent {
@@ -53,7 +53,7 @@ impl Strategy for Independent {
     }
 
     fn summary(&self) -> &'static str {
-        "each thread draws the whole picture: what cores cost each other"
+        "each thread draws the whole image: what cores cost each other"
     }
 
     fn threads(&self) -> Threads {
@@ -129,7 +129,7 @@ mod tests {
     use crate::synthetic::even;
     use std::num::{NonZeroU32, NonZeroUsize};
 
-    /// Catches threads that share the work, and a picture of another size that is drawn into an old
+    /// Catches threads that share the work, and an image of another size that is drawn into an old
     /// copy.
     #[test]
     fn each_thread_draws_all_of_it() {
@@ -141,7 +141,7 @@ mod tests {
             let work = even(1);
             let recorder = Recorder::new(&work);
             renderer
-                .render(&recorder, &mut Image::new(width, height).expect("a picture"))
+                .render(&recorder, &mut Image::new(width, height).expect("an image"))
                 .expect("drawn");
             let record = recorder.finish();
             assert_eq!(record.threads(), 3);

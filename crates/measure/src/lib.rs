@@ -2,9 +2,9 @@
 //!
 //! * [`check`]: every strategy against the reference, bit for bit, with the pixel, the tile and the
 //!   thread that differ;
-//! * [`compare`]: interleaved rounds in which every timed picture is verified;
+//! * [`compare`]: interleaved rounds in which every timed image is verified;
 //! * [`overhead`]: what a strategy costs beside its work, on synthetic work;
-//! * [`forecast`]: what more threads would make of a picture, beside what those here make of it;
+//! * [`forecast`]: what more threads would make of an image, beside what those here make of it;
 //! * [`explanation`]: what becomes of the efficiency that a strategy loses, by an account of every
 //!   thread's time ([`efficiency`]);
 //! * [`machine`]: what was measured on, and with what;

@@ -1,8 +1,8 @@
 //! What a strategy costs beside its work, on synthetic work: a piece's dispatch, the smallest task
-//! that is worth it, the smallest picture, and the first use.
+//! that is worth it, the smallest image, and the first use.
 //!
 //! All strategies are measured in interleaved rounds, as [`rounds`](crate::rounds) has it, and
-//! every picture is verified.
+//! every image is verified.
 
 mod curve;
 
@@ -20,13 +20,13 @@ use thiserror::Error;
 /// Pixels of the column that tasks are made of: one each, but for a strategy that deals in bands.
 pub const TASKS: u32 = 1024;
 
-/// The cost of a pixel in the pictures of the break-even, in nanoseconds.
+/// The cost of a pixel in the images of the break-even, in nanoseconds.
 pub const PIXEL_NS: f64 = 100.0;
 
 /// The largest side that is tried for the break-even.
 pub const LARGEST_SIDE: u32 = 512;
 
-/// The side of a tile in these pictures.
+/// The side of a tile in these images.
 pub const TILE: NonZeroU32 = NonZeroU32::new(32).expect("32 is not 0");
 
 /// The least efficiency of the smallest task, as a share of the largest efficiency.
@@ -35,7 +35,7 @@ const LEAST_EFFICIENCY: f64 = 0.5;
 /// A task has from one step to as many as 2 to this power.
 const LARGEST_TASK: u32 = 14;
 
-/// The side of the picture of the first use, in pixels.
+/// The side of the image of the first use, in pixels.
 const FIRST_SIDE: u32 = 64;
 
 /// What is measured.
@@ -86,12 +86,12 @@ pub struct OverheadFigures {
     /// "Task Bench", 2020: how long its work takes. `None` if the smallest that was tried, of one
     /// step, is not too small.
     pub metg: Option<f64>,
-    /// The side of the smallest square picture from which on it is faster than the reference, in
+    /// The side of the smallest square image from which on it is faster than the reference, in
     /// pixels; `None` if it never is, up to [`LARGEST_SIDE`].
     pub break_even: Option<f64>,
     /// To prepare it.
     pub prepare: Interval,
-    /// The first rendering after that, of a small picture.
+    /// The first rendering after that, of a small image.
     pub first: Interval,
     /// The same again.
     pub later: Interval,
@@ -103,7 +103,7 @@ pub enum Failure {
     /// It could not be prepared: it is not available here, or could not start its threads.
     #[error("{0}")]
     Preparing(String),
-    /// It failed, or drew a wrong picture.
+    /// It failed, or drew a wrong image.
     #[error("{0}")]
     Rendering(String),
 }
@@ -117,7 +117,7 @@ pub enum OverheadError {
 }
 
 impl OverheadStudy {
-    /// Whether every picture of synthetic work was right. A strategy that is not available draws
+    /// Whether every image of synthetic work was right. A strategy that is not available draws
     /// none.
     #[must_use]
     pub fn passed(&self) -> bool {
@@ -208,8 +208,8 @@ impl Overhead<'_> {
         let uses = (0..3).map(|_| workloads.first.time(&mut *renderer).map_err(failed));
         let uses = uses.collect::<Result<Vec<_>, _>>()?;
         let (first, later) = (uses[0], uses[2]);
-        let pictures = times(&mut workloads.squares, &mut *renderer)?;
-        Ok(Round { dispatch_one, dispatch_all, tasks, pictures, prepare, first, later })
+        let squares = times(&mut workloads.squares, &mut *renderer)?;
+        Ok(Round { dispatch_one, dispatch_all, tasks, squares, prepare, first, later })
     }
 
     fn figures(
@@ -237,7 +237,7 @@ impl Overhead<'_> {
             .enumerate()
             .map(|(index, side)| {
                 let rounds = reference.rounds.iter().zip(&samples.rounds);
-                let ratios = rounds.map(|(base, own)| base.pictures[index] / own.pictures[index]);
+                let ratios = rounds.map(|(base, own)| base.squares[index] / own.squares[index]);
                 (f64::from(side), median(&ratios.collect::<Vec<_>>()).unwrap_or(0.0))
             })
             .collect();
@@ -262,7 +262,7 @@ struct Round {
     /// Of the column, by the power of two of its steps.
     tasks: Vec<f64>,
     /// Of the squares, by [`sides`].
-    pictures: Vec<f64>,
+    squares: Vec<f64>,
     prepare: f64,
     first: f64,
     later: f64,

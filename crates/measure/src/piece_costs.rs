@@ -1,4 +1,4 @@
-//! What each piece of a picture costs, computed alone on one thread.
+//! What each piece of an image costs, computed alone on one thread.
 
 use crate::statistics::lower_quartile;
 use rayweave_contract::{
@@ -13,7 +13,7 @@ use std::time::Instant;
 /// reads.
 const RUN: usize = 16;
 
-/// What a picture is cut into.
+/// What an image is cut into.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cut {
     /// One pixel at a time.
@@ -29,9 +29,9 @@ pub enum Cut {
 impl Cut {
     /// Those that the costs of `pieces` are found from.
     #[must_use]
-    pub fn for_pieces(pieces: &[Granularity]) -> Vec<Self> {
+    pub fn for_pieces(granularities: &[Granularity]) -> Vec<Self> {
         let is_needed = |cut: &Self| {
-            pieces.iter().any(|piece| match piece {
+            granularities.iter().any(|granularity| match granularity {
                 Granularity::Pixel => *cut == Self::Pixels,
                 Granularity::Row => *cut == Self::Rows,
                 Granularity::Tile => *cut == Self::Tiles,
@@ -140,7 +140,7 @@ impl Renderer for Timing {
                 .map(|(y, row)| timed(&mut Tile::row(0, y, row)))
                 .collect(),
             Cut::Tiles => image.tiles(self.tile).iter_mut().map(timed).collect(),
-            // Tiles larger than the picture: one.
+            // Tiles larger than the image: one.
             Cut::Whole => image.tiles(NonZeroU32::MAX).iter_mut().map(timed).collect(),
         };
         let costs = costs?;
@@ -195,7 +195,7 @@ pub struct PieceCosts {
     pixels: Vec<f64>,
     rows: Vec<f64>,
     tiles: Vec<f64>,
-    /// The whole picture at once.
+    /// The whole image at once.
     whole: f64,
 }
 
@@ -218,8 +218,8 @@ impl PieceCosts {
 
     /// Whether what a strategy needs that deals in such pieces was measured.
     #[must_use]
-    pub fn know(&self, piece: Granularity) -> bool {
-        match piece {
+    pub fn know(&self, granularity: Granularity) -> bool {
+        match granularity {
             Granularity::Pixel => !self.pixels.is_empty(),
             Granularity::Row => !self.rows.is_empty(),
             Granularity::Tile => !self.tiles.is_empty(),
@@ -231,10 +231,10 @@ impl PieceCosts {
     ///
     /// A band's cost is put together: as its rows at once are cheaper than one by one, each row
     /// costs a share of itself, and the band's first row the rest too; the share is the one that is
-    /// right for the whole picture.
+    /// right for the whole image.
     #[must_use]
-    pub fn of(&self, piece: Granularity, threads: usize) -> Vec<f64> {
-        match piece {
+    pub fn of(&self, granularity: Granularity, threads: usize) -> Vec<f64> {
+        match granularity {
             Granularity::Pixel => self.pixels.clone(),
             Granularity::Row => self.rows.clone(),
             Granularity::Tile => self.tiles.clone(),
@@ -264,11 +264,11 @@ mod tests {
     use crate::synthetic::even;
     use std::num::NonZeroUsize;
 
-    /// `cut` of a picture of 7 x 5 pixels, in tiles of 4, after two renderings.
+    /// `cut` of an image of 7 x 5 pixels, in tiles of 4, after two renderings.
     fn drawn(cut: Cut) -> OneByOne {
         let one_by_one = OneByOne::new(cut);
         let plan = Plan { threads: NonZeroUsize::MIN, tile: NonZeroU32::new(4).expect("not 0") };
-        let mut image = Image::new(7, 5).expect("a picture");
+        let mut image = Image::new(7, 5).expect("an image");
         for _ in 0..2 {
             let mut renderer = one_by_one.prepare(plan).expect("prepared");
             renderer.render(&even(50), &mut image).expect("drawn");
@@ -276,7 +276,7 @@ mod tests {
         one_by_one
     }
 
-    /// Catches pictures that are cut wrongly, and pixels that are remembered one by one.
+    /// Catches images that are cut wrongly, and pixels that are remembered one by one.
     #[test]
     fn every_piece_has_a_cost() {
         let cuts = [Cut::Pixels, Cut::Rows, Cut::Tiles, Cut::Whole].map(drawn);

@@ -94,8 +94,8 @@ impl TileRecord {
         containing.map(|&(tile, thread)| self.computation(tile, thread)).collect()
     }
 
-    /// How often each pixel of a picture of this size was computed, row by row. What was computed
-    /// outside of the picture is not counted.
+    /// How often each pixel of an image of this size was computed, row by row. What was computed
+    /// outside of the image is not counted.
     #[must_use]
     pub fn times_computed(&self, width: u32, height: u32) -> Vec<u32> {
         let mut times = vec![0; width as usize * height as usize];
@@ -206,7 +206,7 @@ mod tests {
             record.of_pixel(1, 0).iter().map(|c| (c.tile.x, c.thread.index)).collect();
         assert_eq!(order, [(0, 0), (1, 1)]);
         assert_eq!(record.of_pixel(2, 1)[0].thread.index, 0);
-        // The row at (2, 1) reaches beyond a picture of 3 x 2.
+        // The row at (2, 1) reaches beyond an image of 3 x 2.
         assert_eq!(record.times_computed(3, 2), [1, 2, 1, 0, 0, 1]);
         let last = record.of_pixel(1, 0).pop().expect("computed");
         assert_eq!(last.to_string(), "tile 2x1 at (1, 0) by thread 1 (\"second\")");

@@ -3,7 +3,7 @@
 use rayweave_contract::{Rgb, Tile, Work};
 
 /// A busy loop of so many steps at each pixel `(x, y)`, as the function says. A pixel's colour
-/// follows from its place and its steps alone, so that a picture can be verified.
+/// follows from its place and its steps alone, so that an image can be verified.
 #[derive(Clone, Copy, Debug)]
 pub struct Synthetic<Steps>(pub Steps);
 
@@ -49,21 +49,21 @@ mod tests {
     #[test]
     fn a_color_follows_from_place_and_steps() {
         let draw = |work: &dyn Work, tile| {
-            let mut image = Image::new(5, 3).expect("a picture");
+            let mut image = Image::new(5, 3).expect("an image");
             image
                 .tiles(NonZeroU32::new(tile).expect("not 0"))
                 .iter_mut()
                 .for_each(|tile| work.render(tile));
             image
         };
-        let picture = draw(&even(3), 2);
-        assert_eq!(picture, draw(&even(3), 5));
-        assert_ne!(picture, draw(&even(4), 5));
-        let mut colors = picture.pixels().to_vec();
+        let image = draw(&even(3), 2);
+        assert_eq!(image, draw(&even(3), 5));
+        assert_ne!(image, draw(&even(4), 5));
+        let mut colors = image.pixels().to_vec();
         colors.dedup();
         assert_eq!(colors.len(), 15);
         let half = draw(&Synthetic(|_, y| 3 * (y / 2)), 1);
-        assert_eq!(half.pixels()[10..], picture.pixels()[10..]);
+        assert_eq!(half.pixels()[10..], image.pixels()[10..]);
         assert_eq!(half.pixels()[..10], draw(&even(0), 1).pixels()[..10]);
     }
 }

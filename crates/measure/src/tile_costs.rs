@@ -109,7 +109,7 @@ mod tests {
 
         let work = Counts(AtomicUsize::new(0));
         let timed =
-            TileCosts::of(&work, 5, 3, NonZeroU32::new(2).expect("not 0")).expect("a picture");
+            TileCosts::of(&work, 5, 3, NonZeroU32::new(2).expect("not 0")).expect("an image");
         assert_eq!((timed.costs.len(), work.0.into_inner()), (6, 6 * PASSES));
     }
 }

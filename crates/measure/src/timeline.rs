@@ -102,7 +102,7 @@ struct Lanes {
     free: Vec<Arc<Pieces>>,
 }
 
-/// Only its own thread ever locks it while a picture is rendered, so nobody waits.
+/// Only its own thread ever locks it while an image is rendered, so nobody waits.
 type Pieces = Mutex<Vec<Piece>>;
 
 static RECORDERS: AtomicU64 = AtomicU64::new(0);

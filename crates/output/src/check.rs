@@ -85,13 +85,13 @@ struct Size<'a> {
 }
 
 impl<'a> Part<'a> {
-    fn new(Checked { strategies, pictures, threads, tiles }: &'a Checked) -> Self {
+    fn new(Checked { strategies, images, threads, tiles }: &'a Checked) -> Self {
         let size = |(scene, width, height): &'a (String, u32, u32)| Size {
             scene,
             width: *width,
             height: *height,
         };
-        Self { strategies, pictures: pictures.iter().map(size).collect(), threads, tiles }
+        Self { strategies, pictures: images.iter().map(size).collect(), threads, tiles }
     }
 }
 
@@ -124,7 +124,7 @@ impl<'a> Item<'a> {
                 Fault::Threads { .. } => "threads",
                 Fault::Failed(_) => "failed",
             },
-            picture: finding.picture.as_ref().map(|picture| Picture {
+            picture: finding.render.as_ref().map(|picture| Picture {
                 scene: &picture.scene,
                 width: picture.width,
                 height: picture.height,
@@ -152,16 +152,12 @@ mod tests {
         let found = |found| Finding {
             strategy: "one",
             threads: 2,
-            picture: Some(picture.clone()),
+            render: Some(picture.clone()),
             fault: Fault::Threads { expected: 2, found },
         };
-        let pictures = vec![("room".to_owned(), 7, 3)];
-        let checked = vec![Checked {
-            strategies: vec!["one"],
-            pictures,
-            threads: vec![1, 2],
-            tiles: vec![8],
-        }];
+        let images = vec![("room".to_owned(), 7, 3)];
+        let checked =
+            vec![Checked { strategies: vec!["one"], images, threads: vec![1, 2], tiles: vec![8] }];
         Verdict { checked, compared: 96, findings: (10..10 + findings).map(found).collect() }
     }
 

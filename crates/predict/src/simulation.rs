@@ -1,7 +1,7 @@
 //! A discrete-event simulation of a strategy: the costs of its pieces are replayed under its policy.
 //!
 //! What it leaves out: all threads compute equally fast, each on a core of its own, as does the
-//! owner of the picture that pieces are sent to; whoever waits for a lock gets it in the order of
+//! owner of the image that pieces are sent to; whoever waits for a lock gets it in the order of
 //! asking; memory has any bandwidth.
 
 use crate::scheduler::{Scheduler, Source};
@@ -24,7 +24,7 @@ pub struct Overheads {
     pub piece: f64,
     /// To take pieces from what all threads share.
     pub take: Access,
-    /// To put a piece into the picture under the lock, or to receive it.
+    /// To put a piece into the image under the lock, or to receive it.
     pub deliver: Access,
     /// To take pieces from another thread.
     pub steal: f64,
@@ -67,7 +67,7 @@ pub fn simulate(
         overheads,
         scheduler: Scheduler::new(policy.scheduling, threads, pieces.len()),
         shared_queue: Shared::default(),
-        picture: Shared::default(),
+        image: Shared::default(),
         local_queues: vec![0..0; threads],
         computed: vec![0.0; threads],
         events: BinaryHeap::new(),
@@ -94,7 +94,7 @@ struct Simulation<'a> {
     /// What pieces are taken from.
     shared_queue: Shared,
     /// Where they are put.
-    picture: Shared,
+    image: Shared,
     /// What each thread has taken, and not yet computed.
     local_queues: Vec<Range<usize>>,
     computed: Vec<f64>,
@@ -112,22 +112,22 @@ impl Simulation<'_> {
 
     /// A thread has nothing in hand and asks for more.
     fn take(&mut self, time: f64, thread: usize) {
-        let Some(grant) = self.scheduler.next(thread) else {
+        let Some(chunk) = self.scheduler.next(thread) else {
             self.end = self.end.max(time);
             self.idle.push(thread);
             return;
         };
-        let begin = match grant.source {
+        let begin = match chunk.source {
             Source::Own => time,
             Source::Shared => self.shared_queue.access(time, thread, &self.overheads.take),
             Source::Stolen => time + self.overheads.steal,
         };
-        if grant.laid_out {
+        if chunk.laid_out {
             for other in std::mem::take(&mut self.idle) {
                 self.at(begin, other, Step::Take);
             }
         }
-        self.local_queues[thread] = grant.pieces;
+        self.local_queues[thread] = chunk.pieces;
         self.compute(begin, thread);
     }
 
@@ -145,7 +145,7 @@ impl Simulation<'_> {
 
     /// A thread has computed a piece.
     fn deliver(&mut self, time: f64, thread: usize) {
-        let delivered = self.picture.access(time, thread, &self.overheads.deliver);
+        let delivered = self.image.access(time, thread, &self.overheads.deliver);
         self.end = self.end.max(delivered);
         // A piece that is sent is the owner's business.
         let free = if self.policy.output == Output::Channel { time } else { delivered };

@@ -117,14 +117,14 @@ fn the_difference(findings: &[Finding]) -> (usize, (u32, u32), Option<Rgb>, Opti
         Finding {
             strategy: NAME,
             threads: 2,
-            picture: Some(picture),
+            render: Some(render),
             fault: Fault::Different(found),
         },
     ] = findings
     else {
         panic!("not a single difference: {findings:#?}");
     };
-    assert_eq!((picture.scene.as_str(), picture.tile, picture.repetition), ("gradient", 8, 1));
+    assert_eq!((render.scene.as_str(), render.tile, render.repetition), ("gradient", 8, 1));
     assert_eq!(found.expected, Gradient::color(found.x, found.y));
     let computation =
         found.computation.clone().map(|computation| (computation.tile, computation.thread.name));
@@ -373,7 +373,7 @@ fn replaces_the_image_by_a_smaller_one() {
         *image = Image::new(3, 2).expect("an image");
         Ok(())
     });
-    let message = "the picture was replaced by one of 3x2".to_owned();
+    let message = "the image was replaced by one of 3x2".to_owned();
     assert_eq!(faults(&found), [&Fault::Failed(message)]);
 }
 
@@ -395,7 +395,7 @@ fn does_not_compute_the_second_time() {
         faults(&found),
         [&Fault::NotOnce { pixels: 240, x: 0, y: 0, computations: Vec::new() }]
     );
-    assert_eq!(found[0].picture.as_ref().map(|picture| picture.repetition), Some(2));
+    assert_eq!(found[0].render.as_ref().map(|render| render.repetition), Some(2));
 }
 
 fn faults(findings: &[Finding]) -> Vec<&Fault> {

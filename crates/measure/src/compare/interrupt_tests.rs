@@ -3,7 +3,7 @@
 use super::tests::{QUEUE, REFERENCE, entry, fake, protocol, right};
 use super::*;
 
-/// Three rows: a call for the reference's picture, three that warm up, three a round.
+/// Three rows: a call for the reference's image, three that warm up, three a round.
 fn interrupted_in(call: usize) -> Result<Comparison, CompareError> {
     let mut calls = 0;
     // The call that is interrupted fails, since its process is interrupted too.
@@ -31,7 +31,7 @@ fn what_is_interrupted_is_of_the_complete_rounds() {
         }
     }
     let all = protocol(8, 10, u64::MAX).run(&REFERENCE, &[], &mut fake(|_, _| right(1)), |_| {});
-    assert!(!all.expect("a reference picture").interrupted);
+    assert!(!all.expect("a reference image").interrupted);
 }
 
 /// Catches a table of fewer rounds than an interval takes.

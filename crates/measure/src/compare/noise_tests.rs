@@ -1,7 +1,7 @@
 //! What the protocol finds out in spite of noise: many comparisons of renderings whose times are
 //! made up.
 
-use super::tests::{Named, QUEUE, REFERENCE, entry, picture};
+use super::tests::{Named, QUEUE, REFERENCE, entry, image};
 use super::*;
 use crate::random::SplitMix64;
 use crate::statistics::{Interval, median};
@@ -31,7 +31,7 @@ impl Executor for Noisy {
         let disturbance = if disturbed { -0.1 * (1.0 - self.random.fraction()).ln() } else { 0.0 };
         let seconds = 0.1 * slowdown * drift * (noise + disturbance);
         self.clock += seconds;
-        Ok(Sample::new(0, (seconds * 1e9) as u64, picture(1.0)))
+        Ok(Sample::new(0, (seconds * 1e9) as u64, image(1.0)))
     }
 
     fn elapsed(&self) -> Duration {
@@ -45,7 +45,7 @@ fn runs(count: u64, protocol: Protocol, slowdown: f64) -> Vec<Comparison> {
     let run = |seed| {
         let mut executor = Noisy { random: SplitMix64::new(seed), clock: 0.0, slowdown };
         let protocol = Protocol { seed, ..protocol };
-        protocol.run(&REFERENCE, &[entry(&QUEUE, 1)], &mut executor, |_| {}).expect("a picture")
+        protocol.run(&REFERENCE, &[entry(&QUEUE, 1)], &mut executor, |_| {}).expect("an image")
     };
     (1..=count).map(run).collect()
 }
@@ -129,6 +129,6 @@ fn a_row_that_failed_is_waited_for_by_nobody() {
     let protocol = Protocol { goal: Some(0.05), max_rounds: 1000, budget: Duration::MAX, ..ROUNDS };
     let mut executor = Fails(Noisy { random: SplitMix64::new(1), clock: 0.0, slowdown: 1.0 });
     let run =
-        protocol.run(&REFERENCE, &[entry(BROKEN, 1)], &mut executor, |_| {}).expect("a picture");
+        protocol.run(&REFERENCE, &[entry(BROKEN, 1)], &mut executor, |_| {}).expect("an image");
     assert_eq!(run.rounds, 20);
 }

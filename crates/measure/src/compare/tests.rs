@@ -71,16 +71,16 @@ pub(super) fn fake<F: FnMut(&'static str, usize) -> Result<Sample, String>>(answ
     Fake { answer, calls: Vec::new(), clock: Duration::ZERO, interrupted_in: usize::MAX }
 }
 
-pub(super) fn picture(brightness: f32) -> Digest {
+pub(super) fn image(brightness: f32) -> Digest {
     Image::filled(1, 1, [brightness; 3]).expect("a pixel").digest()
 }
 
 pub(super) fn right(render_ns: u64) -> Result<Sample, String> {
-    Ok(Sample::new(7, render_ns, picture(1.0)))
+    Ok(Sample::new(7, render_ns, image(1.0)))
 }
 
 pub(super) fn wrong(render_ns: u64) -> Result<Sample, String> {
-    right(render_ns).map(|sample| Sample { digest: picture(0.5), ..sample })
+    right(render_ns).map(|sample| Sample { digest: image(0.5), ..sample })
 }
 
 pub(super) fn entry(strategy: &Named, threads: usize) -> Entry<'_> {
@@ -102,7 +102,7 @@ fn run<F: FnMut(&'static str, usize) -> Result<Sample, String>>(
     executor: &mut Fake<F>,
 ) -> Comparison {
     let entries = [entry(&POOL, 2), entry(&QUEUE, 4)];
-    protocol.run(&REFERENCE, &entries, executor, |_| {}).expect("a reference picture")
+    protocol.run(&REFERENCE, &entries, executor, |_| {}).expect("a reference image")
 }
 
 #[test]
@@ -132,7 +132,7 @@ fn rows_are_reference_control_and_contenders() {
     let entries = [entry(&REFERENCE, 4), entry(&POOL, 2)];
     let mut executor = fake(|_, _| right(1));
     let comparison =
-        protocol(1, 1, 0).run(&REFERENCE, &entries, &mut executor, |_| {}).expect("a picture");
+        protocol(1, 1, 0).run(&REFERENCE, &entries, &mut executor, |_| {}).expect("an image");
     let rows: Vec<_> =
         comparison.rows.iter().map(|row| (&*row.strategy, row.threads, row.control)).collect();
     assert_eq!(rows, [("reference", 1, false), ("reference", 1, true), ("pool", 2, false)]);
@@ -174,15 +174,15 @@ fn a_speedup_is_the_median_of_the_ratios_within_a_round() {
 }
 
 #[test]
-fn a_wrong_picture_ends_its_row_and_no_other() {
+fn a_wrong_image_ends_its_row_and_no_other() {
     // Wrong in the third round: after the warm-up and two good ones.
     let mut executor =
         fake(|name, call| if name == "pool" && call >= 3 { wrong(1) } else { right(4) });
     let comparison = run(protocol(6, 6, u64::MAX), &mut executor);
     let pool = &comparison.rows[2];
     assert!(!pool.identical && !pool.passed() && !comparison.passed());
-    assert_eq!(pool.digest, Some(picture(0.5)));
-    assert_eq!(pool.samples_ns.len(), 2, "the times of a wrong picture are no sample");
+    assert_eq!(pool.digest, Some(image(0.5)));
+    assert_eq!(pool.samples_ns.len(), 2, "the times of a wrong image are no sample");
     assert_eq!((pool.median_ns, pool.speedup), (None, None));
     assert_eq!(executor.calls.iter().filter(|&&name| name == "pool").count(), 4);
 
@@ -191,14 +191,14 @@ fn a_wrong_picture_ends_its_row_and_no_other() {
     assert_eq!((queue.samples_ns.len(), queue.digest), (6, Some(comparison.digest)));
 }
 
-/// Catches a first picture that nobody looks at, and its time in that of the second.
+/// Catches a first image that nobody looks at, and its time in that of the second.
 #[test]
-fn both_pictures_of_a_fresh_process_are_verified() {
+fn both_images_of_a_fresh_process_are_verified() {
     let both = |render_ns, cold| {
         right(render_ns).map(|sample| Sample {
             cold_ns: Some(3 * render_ns),
             cpu_ns: Some(2 * render_ns),
-            cold_digest: Some(picture(cold)),
+            cold_digest: Some(image(cold)),
             ..sample
         })
     };
@@ -212,7 +212,7 @@ fn both_pictures_of_a_fresh_process_are_verified() {
     assert_eq!((pool.median_ns, pool.cpu_ns, pool.cold_ns), (Some(5), Some(10), Some(15)));
     assert_eq!(pool.cold_speedup, Some(Interval { median: 2.0, low: 2.0, high: 2.0 }));
     assert!(!queue.identical && queue.samples_ns.len() == 2);
-    assert_eq!((queue.digest, &queue.error), (Some(picture(0.5)), &None));
+    assert_eq!((queue.digest, &queue.error), (Some(image(0.5)), &None));
 
     let comparison = run(protocol(1, 1, 0), &mut fake(|_, _| right(1)));
     let pool = &comparison.rows[2];
@@ -231,14 +231,14 @@ fn an_error_ends_its_row_and_no_other() {
     let comparison = run(protocol(6, 6, u64::MAX), &mut executor);
     let queue = &comparison.rows[3];
     assert_eq!(queue.error.as_deref(), Some("no threads"));
-    assert!(!queue.passed() && queue.identical, "the pictures before the error were right");
+    assert!(!queue.passed() && queue.identical, "the images before the error were right");
     assert_eq!((queue.samples_ns.len(), queue.speedup), (1, None));
     assert_eq!(comparison.rows[2].samples_ns.len(), 6);
 
     let mut executor =
         fake(|name, _| if name == "queue" { Err("no threads".to_owned()) } else { right(4) });
     let comparison = run(protocol(1, 1, 0), &mut executor);
-    assert!(!comparison.rows[3].identical, "without a picture nothing is identical");
+    assert!(!comparison.rows[3].identical, "without an image nothing is identical");
 }
 
 #[test]
@@ -246,7 +246,7 @@ fn without_a_right_reference_there_are_no_figures() {
     let failures: [fn() -> Result<Sample, String>; 2] =
         [|| wrong(1), || Err("no memory".to_owned())];
     for failure in failures {
-        // The picture, the warm-up of the reference and its control, two rounds of both, then the
+        // The image, the warm-up of the reference and its control, two rounds of both, then the
         // third.
         let mut executor =
             fake(|name, call| if name == "reference" && call >= 7 { failure() } else { right(4) });
@@ -264,7 +264,7 @@ fn without_a_right_reference_there_are_no_figures() {
 fn a_failing_reference_is_an_error() {
     let mut executor = fake(|_, _| Err("broken".to_owned()));
     let result = protocol(1, 1, 0).run(&REFERENCE, &[], &mut executor, |_| {});
-    assert_eq!(result.expect_err("no picture").to_string(), "the reference failed: broken");
+    assert_eq!(result.expect_err("no image").to_string(), "the reference failed: broken");
 }
 
 #[test]
@@ -285,7 +285,7 @@ fn a_time_limit_is_the_only_limit() {
 #[test]
 fn rounds_end_with_the_budget_but_not_before_the_least_number() {
     let rounds = |protocol| run(protocol, &mut fake(|_, _| right(10))).rounds;
-    // The reference picture takes 10, the warm-up and each round 40: five rounds end at 250.
+    // The reference image takes 10, the warm-up and each round 40: five rounds end at 250.
     assert_eq!(rounds(protocol(1, 100, 250)), 5);
     assert_eq!(rounds(protocol(1, 100, 249)), 4, "a round that would not end in time is not begun");
     assert_eq!(rounds(protocol(3, 100, 0)), 3);
@@ -298,9 +298,7 @@ fn progress_only_grows_and_stays_below_one() {
     let mut fractions = Vec::new();
     let mut executor = fake(|_, _| right(10));
     let protocol = protocol(3, 10, 300);
-    protocol
-        .run(&REFERENCE, &[], &mut executor, |p| fractions.push(p.fraction))
-        .expect("a picture");
+    protocol.run(&REFERENCE, &[], &mut executor, |p| fractions.push(p.fraction)).expect("an image");
     assert!(fractions.is_sorted(), "{fractions:?}");
     assert!(fractions.iter().all(|fraction| (0.0..1.0).contains(fraction)), "{fractions:?}");
     assert!(fractions.last() > Some(&0.8), "{fractions:?}");
@@ -326,7 +324,7 @@ impl<E: Executor> Executor for Counting<E> {
 }
 
 #[test]
-fn rays_are_those_of_a_right_picture_in_the_warm_up() {
+fn rays_are_those_of_a_right_image_in_the_warm_up() {
     let mut executor = Counting(fake(|name, call| match (name, call) {
         ("pool", 0) => wrong(1),
         ("queue", 2) => Err("tired".to_owned()),
@@ -335,7 +333,7 @@ fn rays_are_those_of_a_right_picture_in_the_warm_up() {
     let entries = [entry(&POOL, 2), entry(&QUEUE, 4)];
     let comparison = protocol(3, 3, u64::MAX)
         .run(&REFERENCE, &entries, &mut executor, |_| {})
-        .expect("a picture");
+        .expect("an image");
     let rays = comparison.rows.iter().map(|row| (row.primary_rays, row.redundant_rays));
     let counted = |threads| (Some(2 * threads), Some(threads));
     assert!(rays.eq([counted(1), counted(1), (None, None), counted(4)]));

@@ -38,7 +38,7 @@ fn together(
     let mut second = Part { number: 1, calls: &calls, answer: second };
     let comparisons = protocol(rounds, rounds, u64::MAX)
         .run_together(&REFERENCE, &[entry(&POOL, 2)], &mut [&mut first, &mut second], |_| {})
-        .expect("a reference picture");
+        .expect("a reference image");
     (comparisons.try_into().expect("two comparisons"), calls.into_inner())
 }
 
@@ -66,7 +66,7 @@ fn together_each_round_has_the_rows_of_all() {
 #[test]
 fn times_of_one_over_times_of_another_are_ratios_within_a_round() {
     // Rounds slow down by a factor that all share; the first's reference is called once more, for
-    // the picture.
+    // the image.
     let slow = |name, call: usize, first| match name {
         "reference" => 1000 << (call.saturating_sub(first) / 2),
         _ => 1,
@@ -81,7 +81,7 @@ fn times_of_one_over_times_of_another_are_ratios_within_a_round() {
 }
 
 #[test]
-fn together_all_have_to_give_the_first_s_picture() {
+fn together_all_have_to_give_the_first_s_image() {
     let ([a, b], _) = together(3, |_, _| right(1), |_, _| wrong(1));
     assert!(a.passed() && a.rows[2].speedup.is_some());
     assert!(b.rows.iter().all(|row| !row.identical && row.speedup.is_none()));

@@ -84,7 +84,7 @@ fn explain(strategies: &[&dyn Strategy]) -> Result<Explanation, ExplainError> {
 fn each_strategy_has_a_row_and_its_pieces() {
     let explanation = explain(&[&Obedience::AllOfThem, &Obedience::AllOfThem]).expect("explained");
     assert_eq!((explanation.rounds, explanation.reference), (3, "all"));
-    assert_eq!(explanation.digest, Image::filled(5, 4, [0.5; 3]).expect("a picture").digest());
+    assert_eq!(explanation.digest, Image::filled(5, 4, [0.5; 3]).expect("an image").digest());
     assert_eq!(explanation.rows.len(), 2);
     for row in &explanation.rows {
         assert_eq!((row.strategy, row.threads), ("all", 2));
@@ -110,9 +110,9 @@ fn a_strategy_without_threads_has_one_whatever_it_is_given() {
 #[test]
 fn what_is_wrong_is_not_explained() {
     let wrong =
-        explain(&[&Obedience::AllOfThem, &Obedience::AllButTheFirst]).expect_err("another picture");
+        explain(&[&Obedience::AllOfThem, &Obedience::AllButTheFirst]).expect_err("another image");
     assert!(matches!(wrong, ExplainError::Different { strategy: "all-but-one" }), "{wrong}");
-    let failed = explain(&[&Obedience::Refuses]).expect_err("no picture");
+    let failed = explain(&[&Obedience::Refuses]).expect_err("no image");
     assert_eq!(failed.to_string(), "refuses: unavailable here: not today");
 }
 
@@ -127,7 +127,7 @@ fn only_what_is_shown_is_kept() {
     let free = RecordingCost { inside_ns: 0.0, outside_ns: 0.0 };
     let kept = |recording| {
         let mut series = Series::new(reference, NonZeroUsize::MIN, recording);
-        let mut image = Image::new(5, 4).expect("a picture");
+        let mut image = Image::new(5, 4).expect("an image");
         for counts in [false, true] {
             series.render(&experiment, free, &mut image, counts).expect("drawn");
         }

@@ -3,12 +3,12 @@ use proptest::prelude::*;
 use rayweave_contract::{Granularity, Scheduling};
 
 /// The kind of piece is the caller's matter: it shows in the costs.
-fn rule(scheduling: Scheduling, output: Output) -> Policy {
+fn policy(scheduling: Scheduling, output: Output) -> Policy {
     Policy { granularity: Granularity::Row, scheduling, output }
 }
 
 fn in_place(scheduling: Scheduling) -> Policy {
-    rule(scheduling, Output::InPlace)
+    policy(scheduling, Output::InPlace)
 }
 
 fn free(scheduling: Scheduling, threads: usize, pieces: &[f64]) -> SimulatedRender {
@@ -26,7 +26,7 @@ const ALL: [Scheduling; 6] = [
     Scheduling::RecursiveSplit,
 ];
 
-/// One heavy piece at the end, as the last row of a picture: who gets it late makes all wait.
+/// One heavy piece at the end, as the last row of an image: who gets it late makes all wait.
 const PIECES: [f64; 8] = [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 9.0];
 
 #[test]
@@ -115,7 +115,7 @@ fn threads_begin_one_after_the_other() {
 
 #[test]
 fn a_lock_is_had_by_one_at_a_time() {
-    let locked = rule(Scheduling::Static, Output::Mutex);
+    let locked = policy(Scheduling::Static, Output::Mutex);
     let overheads =
         |hold, handover| Overheads { deliver: Access { hold, handover }, ..Overheads::default() };
     // Both come at 1, 2 ...: thread 1 always waits for thread 0, and is one hold later from then
@@ -147,7 +147,7 @@ fn a_counter_is_had_by_one_at_a_time() {
 
 #[test]
 fn who_sends_does_not_wait() {
-    let sent = rule(Scheduling::Static, Output::Channel);
+    let sent = policy(Scheduling::Static, Output::Channel);
     let overheads =
         Overheads { deliver: Access { hold: 3.0, handover: 0.0 }, ..Overheads::default() };
     // The owner receives at 1, 4, 7 and 10: the threads have long ended.
@@ -184,7 +184,7 @@ proptest! {
         let access = Access { hold: f64::from(overhead), handover: f64::from(overhead) };
         let overheads = Overheads { piece: f64::from(overhead), take: access, deliver: access, ..Overheads::default() };
         for scheduling in ALL {
-            let run = simulate(rule(scheduling, output), threads, &pieces, &overheads);
+            let run = simulate(policy(scheduling, output), threads, &pieces, &overheads);
             prop_assert_eq!(run.computed.iter().sum::<f64>(), total, "{:?}", scheduling);
             prop_assert!(run.time >= run.computed.iter().copied().fold(0.0, f64::max));
             prop_assert!(run.time * threads as f64 >= total + f64::from(overhead) * pieces.len() as f64);
