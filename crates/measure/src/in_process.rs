@@ -127,111 +127,23 @@ pub(crate) fn nanoseconds(duration: Duration) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rayweave_contract::{
-        Granularity, Output, Policy, Renderer, Rgb, Scheduling, Strategy, StrategyError, Threads,
-        Tile,
-    };
+    use crate::fakes::{FakeStrategy, GREY, Grey, Skip};
+    use rayweave_contract::{StrategyError, Threads};
     use std::num::NonZeroUsize;
     use std::sync::atomic::{AtomicUsize, Ordering};
 
-    const GREY: Rgb = [0.5; 3];
+    static COMPLETE: FakeStrategy = FakeStrategy::complete("complete", Threads::None);
 
-    struct Grey;
-
-    impl Work for Grey {
-        fn render(&self, tile: &mut Tile<'_>) {
-            tile.rows().for_each(|(_, row)| row.fill(GREY));
-        }
-    }
-
-    /// Renders at first, then no more, and at last not even prepares.
-    #[derive(Default)]
-    struct Tires {
-        prepared: AtomicUsize,
-    }
-
-    struct Renders(bool);
-
-    impl Strategy for Tires {
-        fn name(&self) -> &'static str {
-            "tires"
-        }
-
-        fn summary(&self) -> &'static str {
-            "works once"
-        }
-
-        fn threads(&self) -> Threads {
-            Threads::None
-        }
-
-        fn policy(&self) -> Policy {
-            Policy {
-                granularity: Granularity::Tile,
-                scheduling: Scheduling::Dynamic { chunk: 1 },
-                output: Output::InPlace,
+    /// Returns a strategy that renders at first, then nothing, and at last cannot be prepared.
+    fn tires() -> FakeStrategy {
+        FakeStrategy::new("tires", Threads::None, |earlier| match earlier {
+            0 => Ok(Skip(0)),
+            1 => Ok(Skip(usize::MAX)),
+            _ => {
+                let source = std::io::Error::other("tired");
+                Err(StrategyError::Spawn { strategy: "tires", threads: 1, source })
             }
-        }
-
-        fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
-            let source = std::io::Error::other("tired");
-            match self.prepared.fetch_add(1, Ordering::Relaxed) {
-                earlier @ 0..2 => Ok(Box::new(Renders(earlier == 0))),
-                _ => Err(StrategyError::Spawn {
-                    strategy: "tires",
-                    threads: plan.threads.get(),
-                    source,
-                }),
-            }
-        }
-    }
-
-    impl Renderer for Renders {
-        fn render(&mut self, work: &dyn Work, image: &mut Image) -> Result<(), StrategyError> {
-            image
-                .tiles(NonZeroU32::MIN)
-                .iter_mut()
-                .filter(|_| self.0)
-                .for_each(|tile| work.render(tile));
-            Ok(())
-        }
-    }
-
-    /// Renders by tiles of 2 pixels a side, whatever the plan says.
-    struct ByTwos;
-
-    impl Strategy for ByTwos {
-        fn name(&self) -> &'static str {
-            "by-twos"
-        }
-
-        fn summary(&self) -> &'static str {
-            "2 x 2 pixels at a time"
-        }
-
-        fn threads(&self) -> Threads {
-            Threads::None
-        }
-
-        fn policy(&self) -> Policy {
-            Policy {
-                granularity: Granularity::Tile,
-                scheduling: Scheduling::Dynamic { chunk: 1 },
-                output: Output::InPlace,
-            }
-        }
-
-        fn prepare(&self, _: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
-            Ok(Box::new(Self))
-        }
-    }
-
-    impl Renderer for ByTwos {
-        fn render(&mut self, work: &dyn Work, image: &mut Image) -> Result<(), StrategyError> {
-            let size = NonZeroU32::new(2).expect("not 0");
-            image.tiles(size).iter_mut().for_each(|tile| work.render(tile));
-            Ok(())
-        }
+        })
     }
 
     /// Catches a count by the plan's tiles instead of those that were cut, one in the timed
@@ -244,7 +156,7 @@ mod tests {
             Some(u64::from((rect.width + 1) * (rect.height + 1)))
         };
         let plan = NonZeroU32::new(100).expect("not 0");
-        let entry = Entry { strategy: &ByTwos, threads: NonZeroUsize::MIN };
+        let entry = Entry { strategy: &COMPLETE, threads: NonZeroUsize::MIN };
         let mut executor =
             InProcessExecutor::new(&Grey, 5, 4, plan).expect("an image").counting(&rays);
         // Four tiles of 2 x 2 and two of 1 x 2; the whole image is 5 x 4.
@@ -266,17 +178,17 @@ mod tests {
     /// places.
     #[test]
     fn a_cold_rendering_is_prepared_and_rendered_and_then_rendered_again() {
-        let entry = Entry { strategy: &ByTwos, threads: NonZeroUsize::MIN };
+        let entry = Entry { strategy: &COMPLETE, threads: NonZeroUsize::MIN };
         let mut executor = InProcessExecutor::new(&Grey, 3, 2, NonZeroU32::MIN).expect("an image");
         let sample = executor.cold_and_warm(&entry).expect("rendered");
         assert_eq!(sample.cold_digest, Some(sample.digest));
         assert!(sample.cold_ns.expect("a first one") > sample.prepare_ns);
         assert_eq!(sample.cpu_ns.is_some(), cfg!(unix));
 
-        let tires = Tires::default();
+        let tires = tires();
         let entry = Entry { strategy: &tires, threads: NonZeroUsize::MIN };
         let Sample { digest, cold_digest, .. } = executor.cold_and_warm(&entry).expect("rendered");
-        assert_eq!((cold_digest, tires.prepared.load(Ordering::Relaxed)), (Some(digest), 1));
+        assert_eq!((cold_digest, tires.prepared()), (Some(digest), 1));
         let Sample { digest: again, cold_digest, .. } =
             executor.cold_and_warm(&entry).expect("nothing");
         assert!(again != digest && cold_digest == Some(again), "an earlier image");
@@ -285,7 +197,7 @@ mod tests {
     #[test]
     fn an_earlier_image_does_not_pass_for_a_later_one() {
         let mut executor = InProcessExecutor::new(&Grey, 3, 2, NonZeroU32::MIN).expect("an image");
-        let entry = Entry { strategy: &Tires::default(), threads: NonZeroUsize::MIN };
+        let entry = Entry { strategy: &tires(), threads: NonZeroUsize::MIN };
         let right = Image::filled(3, 2, GREY).expect("an image").digest();
         assert_eq!(executor.render(&entry).map(|rendering| rendering.digest), Ok(right));
         assert_ne!(executor.render(&entry).map(|rendering| rendering.digest), Ok(right));

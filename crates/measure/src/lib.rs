@@ -21,6 +21,8 @@ pub mod computing_threads;
 mod digest_text;
 pub mod efficiency;
 pub mod explanation;
+#[cfg(test)]
+mod fakes;
 pub mod finding;
 pub mod forecast;
 pub mod in_process;

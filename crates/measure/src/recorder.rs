@@ -180,18 +180,11 @@ impl fmt::Display for Computation {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    struct Black;
-
-    impl Work for Black {
-        fn render(&self, tile: &mut Tile<'_>) {
-            tile.rows().for_each(|(_, row)| row.fill([0.0; 3]));
-        }
-    }
+    use crate::fakes::Grey;
 
     #[test]
     fn tiles_threads_and_pixels() {
-        let recorder = Recorder::new(&Black);
+        let recorder = Recorder::new(&Grey);
         let render = |x, y| recorder.render(&mut Tile::row(x, y, &mut [[1.0; 3]; 2]));
         render(0, 0);
         thread::scope(|scope| {
@@ -218,7 +211,7 @@ mod tests {
     fn costs_of_all_threads_add_up() {
         let cost =
             |rect: Rect| (rect.x < 4).then(|| u64::from(100 * rect.x + 10 * rect.y + rect.width));
-        let counter = RayCounter::new(&Black, &cost);
+        let counter = RayCounter::new(&Grey, &cost);
         counter.render(&mut Tile::pixel(3, 2, &mut [1.0; 3]));
         thread::scope(|scope| {
             for y in 0..2 {
@@ -228,7 +221,7 @@ mod tests {
         });
         assert_eq!(counter.finish(), Some(321 + 105 + 115));
 
-        let counter = RayCounter::new(&Black, &cost);
+        let counter = RayCounter::new(&Grey, &cost);
         [3, 4, 3].into_iter().for_each(|x| counter.render(&mut Tile::pixel(x, 2, &mut [1.0; 3])));
         assert_eq!(counter.finish(), None);
     }

@@ -88,30 +88,14 @@ impl DispatchProbe {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rayweave_contract::StrategyError;
-
-    /// A renderer that leaves out the last pixels, as many as given.
-    struct LeavesOut(usize);
-
-    impl Renderer for LeavesOut {
-        fn render(&mut self, work: &dyn Work, image: &mut Image) -> Result<(), StrategyError> {
-            let rendered = image.pixels().len() - self.0;
-            for (y, pixel) in (0..).zip(&mut image.pixels_mut()[..rendered]) {
-                work.render(&mut Tile::pixel(0, y, pixel));
-            }
-            Ok(())
-        }
-    }
+    use crate::fakes::Skip;
 
     /// Catches a time of a wrong image, and one that is right only by the rendering before.
     #[test]
     fn a_wrong_image_has_no_time() {
         let mut column = TimedImage::column(9, 2).expect("an image");
-        assert!(column.time(&mut LeavesOut(0)).is_ok());
-        assert_eq!(
-            column.time(&mut LeavesOut(1)),
-            Err("a wrong image of synthetic work".to_owned())
-        );
-        assert!(column.time(&mut LeavesOut(0)).is_ok());
+        assert!(column.time(&mut Skip(0)).is_ok());
+        assert_eq!(column.time(&mut Skip(1)), Err("a wrong image of synthetic work".to_owned()));
+        assert!(column.time(&mut Skip(0)).is_ok());
     }
 }

@@ -1,43 +1,13 @@
 //! The protocol's logic, with a clock and renderings that are made up.
 
 use super::*;
+use crate::fakes::FakeStrategy;
 use crate::statistics::Interval;
-use rayweave_contract::{
-    Granularity, Image, Output, Plan, Policy, Renderer, Scheduling, StrategyError, Threads,
-};
+use rayweave_contract::{Image, Threads};
 
-/// Never asked to render: the executor makes up what it would do.
-pub(super) struct Named(pub &'static str, Threads);
-
-impl Strategy for Named {
-    fn name(&self) -> &'static str {
-        self.0
-    }
-
-    fn summary(&self) -> &'static str {
-        "a name"
-    }
-
-    fn threads(&self) -> Threads {
-        self.1
-    }
-
-    fn policy(&self) -> Policy {
-        Policy {
-            granularity: Granularity::Tile,
-            scheduling: Scheduling::Dynamic { chunk: 1 },
-            output: Output::InPlace,
-        }
-    }
-
-    fn prepare(&self, _: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
-        unreachable!("the executor is a fake")
-    }
-}
-
-pub(super) static REFERENCE: Named = Named("reference", Threads::None);
-pub(super) static POOL: Named = Named("pool", Threads::Pool);
-pub(super) static QUEUE: Named = Named("queue", Threads::PerRender);
+pub(super) static REFERENCE: FakeStrategy = FakeStrategy::named("reference", Threads::None);
+pub(super) static POOL: FakeStrategy = FakeStrategy::named("pool", Threads::Pool);
+pub(super) static QUEUE: FakeStrategy = FakeStrategy::named("queue", Threads::PerRender);
 
 /// Answers the n-th call of a strategy by a function of its name and n, and moves the clock by the
 /// answer.
@@ -83,7 +53,7 @@ pub(super) fn wrong(render_ns: u64) -> Result<Sample, String> {
     right(render_ns).map(|sample| Sample { digest: image(0.5), ..sample })
 }
 
-pub(super) fn entry(strategy: &Named, threads: usize) -> Entry<'_> {
+pub(super) fn entry(strategy: &FakeStrategy, threads: usize) -> Entry<'_> {
     Entry { strategy, threads: NonZeroUsize::new(threads).expect("not 0") }
 }
 

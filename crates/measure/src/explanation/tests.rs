@@ -1,80 +1,24 @@
 //! Experiments with strategies of one thread that do as they are told, on a work that only fills.
 
 use super::*;
+use crate::fakes::{FakeStrategy, GREY, Grey, SIDE, Skip};
 use crate::timeline::{Piece, TimelineLane};
-use rayweave_contract::{
-    Granularity, Output, Policy, Rect, Renderer, Scheduling, StrategyError, Threads, Tile,
-};
+use rayweave_contract::{Rect, StrategyError, Threads};
 use std::time::Duration;
 
-const SIDE: NonZeroU32 = NonZeroU32::new(2).expect("not 0");
-
-struct Grey;
-
-impl Work for Grey {
-    fn render(&self, tile: &mut Tile<'_>) {
-        tile.rows().for_each(|(_, row)| row.fill([0.5; 3]));
-    }
-}
-
-/// What a strategy does with the tiles.
-#[derive(Clone, Copy)]
-enum Obedience {
-    AllOfThem,
-    Alone,
-    AllButTheFirst,
-    Refuses,
-}
-
-impl Strategy for Obedience {
-    fn name(&self) -> &'static str {
-        match self {
-            Self::AllOfThem => "all",
-            Self::Alone => "alone",
-            Self::AllButTheFirst => "all-but-one",
-            Self::Refuses => "refuses",
-        }
-    }
-
-    fn summary(&self) -> &'static str {
-        "one thread"
-    }
-
-    fn threads(&self) -> Threads {
-        if matches!(self, Self::Alone) { Threads::None } else { Threads::PerRender }
-    }
-
-    fn policy(&self) -> Policy {
-        Policy {
-            granularity: Granularity::Tile,
-            scheduling: Scheduling::Static,
-            output: Output::InPlace,
-        }
-    }
-
-    fn prepare(&self, _: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
-        match self {
-            Self::Refuses => {
-                Err(StrategyError::Unavailable { strategy: self.name(), reason: "not today" })
-            }
-            _ => Ok(Box::new(*self)),
-        }
-    }
-}
-
-impl Renderer for Obedience {
-    fn render(&mut self, work: &dyn Work, image: &mut Image) -> Result<(), StrategyError> {
-        let skipped = usize::from(matches!(self, Self::AllButTheFirst));
-        image.tiles(SIDE).iter_mut().skip(skipped).for_each(|tile| work.render(tile));
-        Ok(())
-    }
-}
+static ALL: FakeStrategy = FakeStrategy::complete("all", Threads::PerRender);
+static ALONE: FakeStrategy = FakeStrategy::complete("alone", Threads::None);
+static ALL_BUT_ONE: FakeStrategy =
+    FakeStrategy::new("all-but-one", Threads::PerRender, |_| Ok(Skip(1)));
+static REFUSES: FakeStrategy = FakeStrategy::new("refuses", Threads::PerRender, |_| {
+    Err(StrategyError::Unavailable { strategy: "refuses", reason: "not today" })
+});
 
 /// With two threads each, in three rounds.
 fn explain(strategies: &[&dyn Strategy]) -> Result<Explanation, ExplainError> {
     let protocol =
         Protocol { min_rounds: 3, max_rounds: 3, budget: Duration::ZERO, goal: None, seed: 1 };
-    let reference = &Obedience::AllOfThem;
+    let reference = &ALL;
     let experiment =
         ExplainExperiment { work: &Grey, size: (5, 4), tile: SIDE, reference, protocol };
     experiment.run(strategies, NonZeroUsize::new(2).expect("not 0"), |_| ())
@@ -82,9 +26,9 @@ fn explain(strategies: &[&dyn Strategy]) -> Result<Explanation, ExplainError> {
 
 #[test]
 fn each_strategy_has_a_row_and_its_pieces() {
-    let explanation = explain(&[&Obedience::AllOfThem, &Obedience::AllOfThem]).expect("explained");
+    let explanation = explain(&[&ALL, &ALL]).expect("explained");
     assert_eq!((explanation.rounds, explanation.reference), (3, "all"));
-    assert_eq!(explanation.digest, Image::filled(5, 4, [0.5; 3]).expect("an image").digest());
+    assert_eq!(explanation.digest, Image::filled(5, 4, GREY).expect("an image").digest());
     assert_eq!(explanation.rows.len(), 2);
     for row in &explanation.rows {
         assert_eq!((row.strategy, row.threads), ("all", 2));
@@ -100,7 +44,7 @@ fn each_strategy_has_a_row_and_its_pieces() {
 /// Catches a second thread that waits where there is none.
 #[test]
 fn a_strategy_without_threads_has_one_whatever_it_is_given() {
-    let explanation = explain(&[&Obedience::Alone]).expect("explained");
+    let explanation = explain(&[&ALONE]).expect("explained");
     let row = &explanation.rows[0];
     assert_eq!((row.strategy, row.threads), ("alone", 1));
     assert_eq!(row.lost_ns, row.wall_ns - explanation.reference_ns);
@@ -109,10 +53,9 @@ fn a_strategy_without_threads_has_one_whatever_it_is_given() {
 /// Catches figures of a strategy that draws something else, or nothing.
 #[test]
 fn what_is_wrong_is_not_explained() {
-    let wrong =
-        explain(&[&Obedience::AllOfThem, &Obedience::AllButTheFirst]).expect_err("another image");
+    let wrong = explain(&[&ALL, &ALL_BUT_ONE]).expect_err("another image");
     assert!(matches!(wrong, ExplainError::Different { strategy: "all-but-one" }), "{wrong}");
-    let failed = explain(&[&Obedience::Refuses]).expect_err("no image");
+    let failed = explain(&[&REFUSES]).expect_err("no image");
     assert_eq!(failed.to_string(), "refuses: unavailable here: not today");
 }
 
@@ -121,7 +64,7 @@ fn what_is_wrong_is_not_explained() {
 fn only_what_is_shown_is_kept() {
     let protocol =
         Protocol { min_rounds: 1, max_rounds: 1, budget: Duration::ZERO, goal: None, seed: 1 };
-    let reference = &Obedience::AllOfThem;
+    let reference = &ALL;
     let experiment =
         ExplainExperiment { work: &Grey, size: (5, 4), tile: SIDE, reference, protocol };
     let free = RecordingCost { inside_ns: 0.0, outside_ns: 0.0 };
