@@ -1,53 +1,56 @@
-//! Where the thread-time of a rendering went, and so what of its efficiency is lost to what.
+//! The thread-time of a rendering, split into activities and causes of lost efficiency.
 //!
-//! A rendering that takes `w` on `n` threads has a thread-time of `n w`. A thread computes, is
-//! between two pieces, has not begun yet, or is done and waits for the others: an [`TimeBreakdown`] puts
-//! each nanosecond into one of these. What a strategy loses is its thread-time less the time that
-//! the sequential rendering takes, and the [`LostTime`] are the differences between three accounts:
-//! of the sequential rendering, of the strategy on one thread, and on all. Since an breakdown leaves
-//! nothing out, they add up to that exactly.
+//! A rendering that takes `w` on `n` threads has a thread-time of `n w`. At any time a thread
+//! computes a piece, is between two pieces, has not begun yet, or has finished and waits for the
+//! others. A [`TimeBreakdown`] counts each nanosecond once. A strategy loses its thread-time less
+//! the time of the sequential rendering. [`LostTime`] splits that by cause: each cause is the
+//! difference between two of three breakdowns, of the sequential rendering, of the strategy on one
+//! thread and of the strategy on all threads. A breakdown leaves nothing out, so the causes add up
+//! to the loss exactly.
 
 use crate::timeline::{RecordingCost, Timeline, TimelineLane};
+use serde::{Serialize, Serializer};
 
-/// Where the thread-time of one rendering went; in nanoseconds, over all threads.
+/// The thread-time of one rendering by activity, in nanoseconds over all threads.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimeBreakdown {
-    /// The threads that there are to compute on.
+    /// The number of threads available to the rendering.
     pub threads: usize,
-    /// From the beginning of the rendering to its end.
+    /// The time from the beginning of the rendering to its end.
     pub wall_ns: f64,
-    /// Pieces computed.
+    /// The time in pieces.
     pub busy_ns: f64,
-    /// From each piece to the thread's next.
+    /// The time from each piece to the next of the same thread.
     pub dispatch_ns: f64,
-    /// From a thread's last piece to the last of all. A thread without any waits from the first
-    /// piece of all on.
+    /// The time from a thread's last piece to the last of all. A thread without a piece waits from
+    /// the first piece of all on.
     pub waiting_ns: f64,
-    /// Before a thread's first piece, and after the last of all.
+    /// The time before a thread's first piece, and after the last of all.
     pub serial_ns: f64,
 }
 
-/// Why thread-time is lost.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// A cause of lost thread-time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Cause {
-    /// More is computed: what the sequential rendering's tiles share, smaller pieces compute again.
-    /// Calls of the work, and the memory that they find cold, are in it too.
+    /// More is computed: smaller pieces compute again what the sequential rendering's tiles share.
+    /// It includes calls of the work and cold memory.
     Redundant,
     /// The same pieces take longer on all threads than on one: memory, clock rate, shared cores,
     /// other programs.
     Slowdown,
-    /// From piece to piece, as long as a single thread takes for it.
+    /// The time between pieces that a single thread needs.
     Dispatch,
-    /// From piece to piece, what it takes longer with several threads: locks, a shared counter.
+    /// The additional time between pieces with several threads: locks, a shared counter.
     Contention,
-    /// Threads that are done while others compute.
+    /// Threads have finished while others compute.
     Imbalance,
-    /// Before threads begin and after they have ended.
+    /// Time before threads begin and after they have ended.
     Serial,
 }
 
 impl Cause {
-    /// In the order of the tables.
+    /// All causes, in the order of the tables.
     pub const ALL: [Self; 6] = [
         Self::Redundant,
         Self::Slowdown,
@@ -58,11 +61,11 @@ impl Cause {
     ];
 }
 
-/// What is lost to each cause, in nanoseconds of thread-time. Negative where something is gained.
+/// The thread-time lost to each cause, in nanoseconds; negative where time is gained.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LostTime([f64; Cause::ALL.len()]);
 
-/// A thread's begin and end of computing, what it recorded taken off.
+/// A thread's computing time, without the cost of recording.
 struct Span {
     begin: f64,
     end: f64,
@@ -70,11 +73,11 @@ struct Span {
 }
 
 impl TimeBreakdown {
-    /// The breakdown of a rendering on `threads` threads, or on as many as computed if these are
-    /// more, without what it cost to record.
+    /// Breaks down a rendering on `threads` threads, or on as many as computed if these are more,
+    /// without the `cost` of recording.
     ///
-    /// Each piece of a thread is taken to have begun earlier by the cost of those that it recorded
-    /// before, so the rendering ends earlier by what that brings the last of all forward.
+    /// Each piece of a thread is moved earlier by the cost of those that the thread recorded
+    /// before. The rendering then ends as much earlier as the last piece of all.
     #[must_use]
     pub fn of(timeline: &Timeline, threads: usize, cost: RecordingCost) -> Self {
         let spans: Vec<Span> =
@@ -84,16 +87,14 @@ impl TimeBreakdown {
         let recorded_last =
             timeline.lanes.iter().filter_map(|lane| lane.pieces.last()).map(|p| p.end_ns).max();
         let Some(recorded_last) = recorded_last.map(|ns| ns as f64) else {
-            // Nobody computed.
-            let serial_ns = threads as f64 * recorded_wall;
-            let (busy_ns, dispatch_ns, waiting_ns) = (0.0, 0.0, 0.0);
+            // No thread computed.
             return Self {
                 threads,
                 wall_ns: recorded_wall,
-                busy_ns,
-                dispatch_ns,
-                waiting_ns,
-                serial_ns,
+                busy_ns: 0.0,
+                dispatch_ns: 0.0,
+                waiting_ns: 0.0,
+                serial_ns: threads as f64 * recorded_wall,
             };
         };
         let first = spans.iter().map(|span| span.begin).fold(f64::INFINITY, f64::min);
@@ -111,7 +112,7 @@ impl TimeBreakdown {
         }
     }
 
-    /// Threads times time, in nanoseconds: the sum of all that the breakdown has.
+    /// Returns the number of threads times the time, in nanoseconds: the sum of all activities.
     #[must_use]
     pub fn thread_time_ns(&self) -> f64 {
         self.threads as f64 * self.wall_ns
@@ -124,15 +125,15 @@ impl Span {
         let pieces = lane.pieces.len() as f64;
         let inside = pieces * cost.inside_ns;
         let begin = first.begin_ns as f64;
-        // What is recorded of the last piece after its end delays no other.
+        // The recording of the last piece after its end delays no other piece.
         let end = last.end_ns as f64 - inside - (pieces - 1.0) * cost.outside_ns;
         Some(Self { begin, end, busy: lane.busy_ns() as f64 - inside })
     }
 }
 
 impl LostTime {
-    /// What a strategy loses `together`, on all its threads, by what it does `alone`, on one, and
-    /// by what the `sequential` rendering does.
+    /// Returns the time that a strategy loses on all its threads, `together`, given its breakdown
+    /// on one thread, `alone`, and that of the `sequential` rendering.
     #[must_use]
     pub fn new(
         sequential: &TimeBreakdown,
@@ -149,24 +150,31 @@ impl LostTime {
         }))
     }
 
-    /// To one cause.
+    /// Returns the time lost to `cause`, in nanoseconds.
     #[must_use]
     pub fn to(&self, cause: Cause) -> f64 {
         self.0[cause as usize]
     }
 
-    /// To all of them.
+    /// Returns the time lost to all causes together, in nanoseconds.
     #[must_use]
     pub fn total_ns(&self) -> f64 {
         self.0.iter().sum()
     }
 
-    /// The cause to which most is lost.
+    /// Returns the cause with the largest loss.
     #[must_use]
     pub fn largest(&self) -> Cause {
         let larger = |a: &Cause, b: &Cause| self.to(*a).total_cmp(&self.to(*b));
-        // `max_by` of no causes at all.
+        // There is at least one cause, so the default is never used.
         Cause::ALL.into_iter().max_by(larger).unwrap_or(Cause::Serial)
+    }
+}
+
+/// Serializes as an object with a key for each cause, in nanoseconds.
+impl Serialize for LostTime {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(Cause::ALL.map(|cause| (cause, self.to(cause))))
     }
 }
 
@@ -191,14 +199,14 @@ mod tests {
         Timeline { wall_ns, lanes: lanes.iter().map(lane).collect() }
     }
 
-    /// Two threads: one from 10 to 90 with a gap of 5, the other from 20 to 60 with gaps of 1 and
-    /// 3.
+    /// Returns a rendering on two threads: one computes from 10 to 90 with a gap of 5, the other
+    /// from 20 to 60 with gaps of 1 and 3.
     fn uneven() -> Timeline {
         timeline(100, &[&[(10, 50), (55, 90)], &[(20, 30), (31, 40), (43, 60)]])
     }
 
     #[test]
-    fn every_nanosecond_is_somewhere() {
+    fn every_nanosecond_is_counted_once() {
         let breakdown = TimeBreakdown::of(&uneven(), 2, FREE);
         let expected = TimeBreakdown {
             threads: 2,
@@ -212,7 +220,7 @@ mod tests {
         assert_eq!(breakdown.thread_time_ns(), 111.0 + 9.0 + 30.0 + 50.0);
     }
 
-    /// Catches idle threads that are forgotten, or that wait before anybody can have a piece.
+    /// Catches idle threads that are not counted, or that wait before the first piece of all.
     #[test]
     fn a_thread_without_a_piece_waits_from_the_first_to_the_last() {
         let breakdown = TimeBreakdown::of(&uneven(), 4, FREE);
@@ -221,19 +229,19 @@ mod tests {
             (30.0 + 2.0 * 80.0, 50.0 + 2.0 * (10.0 + 10.0))
         );
         assert_eq!((breakdown.busy_ns, breakdown.dispatch_ns), (111.0, 9.0));
-        // More threads than there should be are all there.
+        // Threads beyond the expected number are counted too.
         assert_eq!(TimeBreakdown::of(&uneven(), 1, FREE), TimeBreakdown::of(&uneven(), 2, FREE));
     }
 
     #[test]
-    fn a_rendering_without_a_piece_is_nothing_but_ends() {
+    fn a_rendering_without_a_piece_is_serial() {
         let breakdown = TimeBreakdown::of(&timeline(7, &[]), 3, FREE);
         assert_eq!((breakdown.thread_time_ns(), breakdown.serial_ns), (21.0, 21.0));
     }
 
-    /// Catches a cost that is taken off twice, for the last piece, or not off the whole.
+    /// Catches a cost that is subtracted twice, for the last piece, or not from the whole.
     #[test]
-    fn the_cost_of_recording_is_taken_off() {
+    fn the_cost_of_recording_is_subtracted() {
         let breakdown =
             TimeBreakdown::of(&uneven(), 2, RecordingCost { inside_ns: 2.0, outside_ns: 1.0 });
         // The threads end 5 and 8 earlier, and the rendering with the first of them.
@@ -252,11 +260,11 @@ mod tests {
     }
 
     #[test]
-    fn losses_are_the_differences_and_add_up() {
+    fn lost_time_adds_up_to_the_loss() {
         let sequential = TimeBreakdown::of(&timeline(90, &[&[(2, 40), (41, 88)]]), 1, FREE);
         let alone = TimeBreakdown::of(&timeline(120, &[&[(5, 40), (42, 80), (84, 110)]]), 1, FREE);
         let together = TimeBreakdown::of(&uneven(), 2, FREE);
-        let losses = LostTime::new(&sequential, &alone, &together);
+        let lost = LostTime::new(&sequential, &alone, &together);
         let expected = [
             (Cause::Redundant, 99.0 - 85.0),
             (Cause::Slowdown, 111.0 - 99.0),
@@ -265,13 +273,13 @@ mod tests {
             (Cause::Imbalance, 30.0),
             (Cause::Serial, 50.0 - 4.0),
         ];
-        assert_eq!(Cause::ALL.map(|cause| (cause, losses.to(cause))), expected);
-        assert_eq!(losses.total_ns(), 2.0 * 100.0 - 90.0);
-        assert_eq!(losses.largest(), Cause::Serial);
+        assert_eq!(Cause::ALL.map(|cause| (cause, lost.to(cause))), expected);
+        assert_eq!(lost.total_ns(), 2.0 * 100.0 - 90.0);
+        assert_eq!(lost.largest(), Cause::Serial);
     }
 
     #[test]
-    fn sequential_loses_nothing_against_itself_but_the_other_threads() {
+    fn sequential_loses_only_idle_threads_against_itself() {
         let timeline = timeline(90, &[&[(2, 40), (41, 88)]]);
         let one = TimeBreakdown::of(&timeline, 1, FREE);
         assert_eq!(LostTime::new(&one, &one, &one).total_ns(), 0.0);

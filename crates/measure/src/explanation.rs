@@ -1,11 +1,10 @@
-//! Why strategies lose what they lose: renderings that are recorded beside renderings that are not,
-//! in the same interleaved rounds.
+//! Explains lost efficiency: renders with and without a recorder in the same interleaved rounds.
 //!
-//! What is explained is the loss of the quickest plain renderings: what slows a rendering down from
-//! outside is no fault of its strategy. The explanation is that of the quickest recorded ones, the
-//! cost of recording taken off. Their accounts add up exactly; how far they miss the plain ones is
-//! part of the result. Source for the quickest: Chen and Revels, "Robust benchmarking in noisy
-//! environments", 2016.
+//! The loss is that of the quickest plain rendering, because interference from outside only adds
+//! time. The causes are those of the quickest recorded rendering, without the cost of recording.
+//! They add up exactly to the recorded loss; the difference to the plain loss is part of the
+//! result. Source for the quickest: Chen and Revels, "Robust benchmarking in noisy environments",
+//! 2016.
 
 use crate::catch_panic::catch_panic;
 use crate::efficiency::{LostTime, TimeBreakdown};
@@ -15,6 +14,7 @@ use crate::sentinel;
 use crate::statistics::{Interval, ratio_interval};
 use crate::timeline::{RecordingCost, TimeRecorder, Timeline};
 use rayweave_contract::{Digest, Image, ImageError, Plan, Strategy, Work};
+use serde::Serialize;
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::time::Instant;
 use thiserror::Error;
@@ -22,31 +22,31 @@ use thiserror::Error;
 #[cfg(test)]
 mod tests;
 
-/// What is rendered, and against what.
+/// The renderings to explain, and the reference to explain them against.
 #[derive(Clone, Copy)]
 pub struct ExplainExperiment<'a> {
-    /// What every rendering computes.
+    /// The work of every rendering.
     pub work: &'a dyn Work,
-    /// Of the image, in pixels.
+    /// The width and height of the image in pixels.
     pub size: (u32, u32),
     /// The side of a tile, in pixels.
     pub tile: NonZeroU32,
-    /// What a loss is measured against, on one thread.
+    /// The strategy that defines zero loss, on one thread.
     pub reference: &'a dyn Strategy,
-    /// How long to measure.
+    /// The number of rounds and the time for them.
     pub protocol: Protocol,
 }
 
-/// Why nothing was explained.
+/// An error that leaves nothing to explain.
 #[derive(Debug, Error)]
 pub enum ExplainError {
-    /// There is no such image.
+    /// There is no image of this size.
     #[error(transparent)]
     Image(#[from] ImageError),
     /// A strategy failed.
     #[error("{0}")]
     Failed(String),
-    /// Its times would mean nothing.
+    /// A strategy gave another image than the reference, so its times mean nothing.
     #[error("{strategy}: drew another image than the reference (see `rayweave check`)")]
     Different {
         /// The strategy's name.
@@ -54,83 +54,89 @@ pub enum ExplainError {
     },
 }
 
-/// What became of the efficiency of some strategies.
+/// The lost efficiency of some strategies.
 #[derive(Clone, Debug)]
 pub struct Explanation {
     /// The reference's name.
     pub reference: &'static str,
-    /// Its shortest time, in nanoseconds, not recorded.
+    /// The reference's shortest plain time, in nanoseconds.
     pub reference_ns: f64,
-    /// In the order asked for.
+    /// The strategies, in the order asked for.
     pub rows: Vec<ExplainedStrategy>,
-    /// Of every image.
+    /// The digest of every image.
     pub digest: Digest,
-    /// Rounds measured.
+    /// The number of rounds measured.
     pub rounds: usize,
-    /// What was taken off the recorded times.
+    /// The cost of recording, which the causes do not contain.
     pub cost: RecordingCost,
 }
 
-/// What became of the efficiency of one strategy.
-#[derive(Clone, Debug)]
+/// The lost efficiency of one strategy. It serializes without the time line.
+#[derive(Clone, Debug, Serialize)]
 pub struct ExplainedStrategy {
     /// The strategy's name.
     pub strategy: &'static str,
-    /// The threads it was given.
+    /// The number of computing threads.
     pub threads: usize,
-    /// Its shortest time, in nanoseconds, not recorded.
+    /// The shortest plain time, in nanoseconds.
     pub wall_ns: f64,
-    /// What it loses of its thread-time, in nanoseconds, not recorded: threads times its time, less
-    /// the reference's.
+    /// The plain thread-time that is lost, in nanoseconds: the number of threads times the time,
+    /// less the reference's time.
     pub lost_ns: f64,
-    /// To what. Their sum misses [`ExplainedStrategy::lost_ns`] by what recorded and plain renderings differ in.
+    /// The lost time by cause. Its sum differs from [`ExplainedStrategy::lost_ns`] as recorded
+    /// renderings differ from plain ones.
+    #[serde(rename = "losses_ns")]
     pub lost_time: LostTime,
-    /// Recorded over plain time, within a round.
+    /// The recorded over the plain time within a round.
+    #[serde(rename = "recorded_over_plain")]
     pub recorded: Interval,
-    /// A gap between two pieces that is longer than 999 of 1000 on a single thread, in nanoseconds.
+    /// The gap between two pieces that is longer than 999 of 1000 on a single thread, in
+    /// nanoseconds.
     pub long_gap_ns: f64,
-    /// The quickest of the recorded renderings, the cost of recording in it.
+    /// The quickest recorded rendering, with the cost of recording in it.
+    #[serde(skip)]
     pub timeline: Timeline,
 }
 
 impl ExplainedStrategy {
-    /// Threads times time, in nanoseconds.
+    /// Returns the number of threads times the time, in nanoseconds.
     #[must_use]
     pub fn thread_time_ns(&self) -> f64 {
         self.threads as f64 * self.wall_ns
     }
 
-    /// What the causes do not add up to of the loss, in nanoseconds; below 0 if they are more.
+    /// Returns the part of the loss that the causes do not explain, in nanoseconds; below 0 if they
+    /// add up to more.
     #[must_use]
     pub fn unexplained_ns(&self) -> f64 {
         self.lost_ns - self.lost_time.total_ns()
     }
 }
 
-/// A strategy with a number of threads, recorded or not, and what its renderings gave.
+/// The renderings of a strategy with a number of threads, recorded or not.
 struct Series<'a> {
     strategy: &'a dyn Strategy,
     threads: NonZeroUsize,
     recording: Recording,
-    /// For the pieces of a thread.
+    /// The number of pieces of a thread that a recorder has memory for.
     room: usize,
     wall_ns: Vec<u64>,
-    /// Of the recorded renderings.
+    /// The quickest recorded rendering.
     quickest: Option<Recorded>,
 }
 
-/// Whether renderings are recorded, and what is kept of it.
+/// The data that is kept of a rendering.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Recording {
-    /// They are plain.
+    /// Nothing but its time: it is plain.
     Off,
-    /// The sums.
+    /// The time breakdown.
     Breakdown,
-    /// The sums and every piece, which may be as many as pixels.
+    /// The time breakdown and every piece; there may be as many pieces as pixels.
     Timeline,
 }
 
-/// What is kept of a recorded rendering.
+/// A recorded rendering.
 struct Recorded {
     wall_ns: u64,
     breakdown: TimeBreakdown,
@@ -139,21 +145,21 @@ struct Recorded {
     timeline: Timeline,
 }
 
-/// Of a strategy, the places of its series.
+/// The places of the series of one strategy.
 struct Places {
-    /// Recorded, on one thread.
+    /// The recorded series on one thread.
     alone: usize,
     plain: usize,
     recorded: usize,
 }
 
 impl ExplainExperiment<'_> {
-    /// Explains `strategies` on `threads` threads each. `progress` is told how much is done, 0 to
-    /// 1.
+    /// Explains `strategies` on `threads` threads each. `progress` gets the share that is done, 0
+    /// to 1.
     ///
     /// # Errors
     ///
-    /// A strategy fails, or draws another image than the reference.
+    /// A strategy fails, or gives another image than the reference.
     pub fn run(
         &self,
         strategies: &[&dyn Strategy],
@@ -205,7 +211,7 @@ impl ExplainExperiment<'_> {
     }
 }
 
-/// Takes the time line out of the series.
+/// Returns the row of the series at `places`, and takes their time line.
 fn row(
     series: &mut [Series<'_>],
     &Places { alone, plain, recorded }: &Places,
@@ -213,7 +219,7 @@ fn row(
 ) -> ExplainedStrategy {
     let threads = series[plain].threads.get();
     let wall_ns = series[plain].shortest_ns();
-    // The first two are the reference's.
+    // The first two series are the reference's.
     let [sequential, on_one, on_all] =
         [1, alone, recorded].map(|place| series[place].breakdown(cost));
     let over_plain = ratio_interval(&series[recorded].wall_ns, &series[plain].wall_ns);
@@ -238,7 +244,7 @@ impl<'a> Series<'a> {
         Self { strategy, threads, recording, room: 0, wall_ns: Vec::new(), quickest: None }
     }
 
-    /// Renders one image, and takes note of it if it `counts`.
+    /// Renders one image, and keeps its data if it `counts`.
     fn render(
         &mut self,
         experiment: &ExplainExperiment<'_>,
@@ -260,7 +266,7 @@ impl<'a> Series<'a> {
 
         let timeline = recorder.map(|recorder| recorder.finish(begin, end));
         if let Some(timeline) = &timeline {
-            // Half as many again as an even share.
+            // One and a half times an even share.
             self.room = timeline.pieces().div_ceil(self.threads.get()) * 3 / 2;
         }
         if !counts {
@@ -289,14 +295,14 @@ impl<'a> Series<'a> {
         self.wall_ns.iter().min().map_or(0.0, |&ns| ns as f64)
     }
 
-    /// Of the quickest recorded rendering; of none if there is none.
+    /// Returns the breakdown of the quickest recorded rendering, or of an empty one.
     fn breakdown(&self, cost: RecordingCost) -> TimeBreakdown {
         let of_none = || TimeBreakdown::of(&Timeline::default(), self.threads.get(), cost);
         self.quickest.as_ref().map_or_else(of_none, |quickest| quickest.breakdown)
     }
 }
 
-/// Longer than 999 of 1000 gaps between pieces; 0 if there are none.
+/// Returns the gap that is longer than 999 of 1000 gaps between pieces; 0 if there are none.
 fn long_gap_ns(timeline: &Timeline) -> f64 {
     let mut gaps: Vec<u64> = timeline.lanes.iter().flat_map(|lane| lane.gaps_ns()).collect();
     let rank = gaps.len() * 999 / 1000;

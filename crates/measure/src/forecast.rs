@@ -1,15 +1,15 @@
-//! What more threads would make of an image, from measured costs, and beside it what the threads
-//! here make of it.
+//! Predicts speed-ups on more threads than the machine has, and checks the prediction on as many as
+//! it has.
 //!
 //! * Every strategy is timed on the numbers of threads that this machine has, by the
 //!   [protocol](crate::compare) of a comparison.
-//! * In the same rounds [independent](crate::independent) threads draw the whole image each: so
-//!   much slower is every piece taken to be beside other threads.
-//! * And in the same rounds one thread draws the image [piece by piece](crate::piece_costs) and
-//!   times each.
-//! * The costs of [threads](crate::calibration) are measured apart, before.
-//! * From these alone the [simulation](rayweave_predict) predicts all speed-ups. Nothing of it is
-//!   fitted to the times of the strategies.
+//! * In the same rounds [independent](crate::independent) threads render the whole image each. The
+//!   ratio to one thread alone is how much longer every piece takes beside other threads.
+//! * In the same rounds one thread renders the image [piece by piece](crate::piece_costs) and times
+//!   each piece.
+//! * The costs of [threads](crate::calibration) are measured separately, before.
+//! * From these alone the [simulation](rayweave_predict) predicts all speed-ups. It is not fitted
+//!   to the times of the strategies.
 
 use crate::calibration::calibrate;
 use crate::compare::{CompareError, Comparison, Entry};
@@ -23,79 +23,91 @@ use crate::statistics::Interval;
 use rayweave_contract::{Granularity, ImageError, Strategy, Threads, Work};
 use rayweave_predict::fit::{amdahl, usl};
 use rayweave_predict::{Law, Overheads, simulate};
+use serde::Serialize;
 use std::num::{NonZeroU32, NonZeroUsize};
 use thiserror::Error;
 
-/// What is predicted.
+/// The strategies and numbers of threads to predict.
 #[derive(Clone, Copy)]
 pub struct Question<'a> {
-    /// What is rendered.
+    /// The work to render.
     pub work: &'a dyn Work,
-    /// Of the image, in pixels.
+    /// The width and height of the image in pixels.
     pub size: (u32, u32),
     /// The side of a tile, in pixels.
     pub tile: NonZeroU32,
-    /// What speed-ups are against.
+    /// The strategy that speed-ups are relative to.
     pub reference: &'a dyn Strategy,
-    /// Those that start no threads are left out.
+    /// The strategies; those that start no threads are left out.
     pub strategies: &'a [&'a dyn Strategy],
-    /// Numbers of threads, the smallest first.
+    /// The numbers of threads, in ascending order.
     pub threads: &'a [NonZeroUsize],
-    /// Threads that can be measured here.
+    /// The number of threads that can be measured here.
     pub available: NonZeroUsize,
-    /// Of what is measured.
+    /// The number of rounds and the time for them.
     pub protocol: Protocol,
 }
 
-/// The answer.
+/// The predicted and the measured speed-ups.
 #[derive(Clone, Debug)]
 pub struct Forecast {
-    /// One a strategy.
+    /// The curves, one for each strategy.
     pub curves: Vec<ForecastCurve>,
-    /// Why strategies are missing.
+    /// The reasons why strategies are missing.
     pub unavailable: Vec<String>,
-    /// How many times as long as alone a thread takes beside others that share nothing with it, by
-    /// the number of all.
-    pub slowdowns: Vec<(usize, Interval)>,
-    /// What was measured.
+    /// The slowdown of threads that share nothing, by their number in ascending order.
+    pub slowdowns: Vec<Slowdown>,
+    /// The measured times.
     pub comparison: Comparison,
 }
 
-/// A strategy on ever more threads.
+/// The slowdown of a thread beside others that share nothing with it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Slowdown {
+    /// The number of all threads.
+    pub threads: usize,
+    /// The time of a thread beside the others over its time alone.
+    pub factor: Interval,
+}
+
+/// The speed-ups of a strategy by the number of threads.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ForecastCurve {
-    /// Its name.
+    /// The strategy's name.
     pub strategy: &'static str,
-    /// As measured here.
+    /// The overheads measured here.
     pub overheads: Overheads,
-    /// In the order of the numbers of threads asked for.
+    /// The points, in the order of the numbers of threads asked for.
     pub points: Vec<ForecastPoint>,
-    /// Of what the strategy makes of its own single thread, all points together; `None` of too few.
+    /// Amdahl's law fitted to the predicted speed-ups over the strategy's own single thread; `None`
+    /// if there are too few points.
     pub amdahl: Option<Law>,
-    /// As `amdahl`.
+    /// Gunther's law fitted to the same points.
     pub usl: Option<Law>,
 }
 
-/// A strategy on a number of threads.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// The speed-up of a strategy on a number of threads, over the reference.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ForecastPoint {
     /// The number of computing threads.
     pub threads: usize,
-    /// As predicted, against the reference.
+    /// The predicted speed-up.
     pub predicted: f64,
-    /// As measured; `None` for more threads than here, and where images were wrong.
+    /// The measured speed-up; `None` for more threads than the machine has, and where images were
+    /// wrong.
     pub measured: Option<Interval>,
 }
 
 impl ForecastPoint {
-    /// By what share the prediction is above what was measured.
+    /// Returns the relative difference of the prediction from the measurement, above 0 if the
+    /// prediction is larger.
     #[must_use]
     pub fn difference(&self) -> Option<f64> {
         self.measured.map(|measured| self.predicted / measured.median - 1.0)
     }
 }
 
-/// What is being done.
+/// The stage that a forecast is in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
     /// Threads, locks and counters are timed.
@@ -104,19 +116,19 @@ pub enum Stage {
     Renderings,
 }
 
-/// Why there is no forecast.
+/// An error that leaves no forecast.
 #[derive(Debug, Error)]
 pub enum ForecastError {
     /// There is nothing to compare with.
     #[error(transparent)]
     Compare(#[from] CompareError),
-    /// There is no such image.
+    /// There is no image of this size.
     #[error(transparent)]
     Image(#[from] ImageError),
-    /// What a strategy says.
+    /// A strategy failed with this message.
     #[error("{0}")]
     Strategy(String),
-    /// No strategy that starts threads.
+    /// There is no strategy that starts threads.
     #[error(
         "there is nothing to predict of a strategy without threads: name one that starts threads"
     )]
@@ -124,13 +136,13 @@ pub enum ForecastError {
 }
 
 impl Question<'_> {
-    /// Measures and predicts; `progress` is told the share of a stage that is done, between timed
+    /// Measures and predicts. `progress` gets the share of a stage that is done, between timed
     /// spans.
     ///
     /// # Errors
     ///
-    /// No image of this size, no strategy that starts threads, or one that fails though it could
-    /// be prepared.
+    /// There is no image of this size or no strategy that starts threads, or a strategy fails
+    /// though it could be prepared.
     pub fn answer(&self, mut progress: impl FnMut(Stage, f64)) -> Result<Forecast, ForecastError> {
         let mut unavailable = Vec::new();
         let mut strategies = Vec::new();
@@ -171,7 +183,7 @@ impl Question<'_> {
         })?;
 
         let Some(reference) = comparison.reference_ns() else {
-            // No row has figures, and the reference's says why.
+            // No row has figures; that of the reference has the reason.
             return Ok(Forecast {
                 curves: Vec::new(),
                 unavailable,
@@ -183,9 +195,9 @@ impl Question<'_> {
         let slowdown_of = |threads: &NonZeroUsize| {
             let threads = threads.get();
             find(&comparison, independent.name(), threads)?.median_ns?;
-            Some((threads, independent.slowdown(threads, &reference_ns)?))
+            Some(Slowdown { threads, factor: independent.slowdown(threads, &reference_ns)? })
         };
-        let slowdowns: Vec<(usize, Interval)> = several.iter().filter_map(slowdown_of).collect();
+        let slowdowns: Vec<Slowdown> = several.iter().filter_map(slowdown_of).collect();
         let speedup =
             |pieces: &OneByOne| Some(find(&comparison, pieces.name(), 1)?.speedup?.median);
         let measured: Vec<_> =
@@ -217,7 +229,8 @@ impl Question<'_> {
                 usl: usl(&own),
             }
         };
-        // Whose pieces could not be timed has no curve, and the row of these pieces says why.
+        // A strategy whose pieces could not be timed has no curve; the row of these pieces has the
+        // reason.
         let known = strategies
             .iter()
             .zip(&overheads)
@@ -231,12 +244,11 @@ fn find<'a>(comparison: &'a Comparison, strategy: &str, threads: usize) -> Optio
     comparison.rows.iter().find(|row| row.strategy == strategy && row.threads == threads)
 }
 
-/// For so many threads: that of the largest number measured that is not larger, and so of all
-/// threads here for any more.
-fn slowdown(slowdowns: &[(usize, Interval)], threads: usize) -> f64 {
-    let known = slowdowns.iter().rfind(|(measured, _)| *measured <= threads);
-    // Company makes no thread faster: below 1 is chance.
-    known.map_or(1.0, |(_, slowdown)| slowdown.median.max(1.0))
+/// Returns the slowdown measured on the largest number of threads up to `threads`.
+fn slowdown(slowdowns: &[Slowdown], threads: usize) -> f64 {
+    let known = slowdowns.iter().rfind(|known| known.threads <= threads);
+    // Other threads make no thread faster: a median below 1 is chance.
+    known.map_or(1.0, |known| known.factor.median.max(1.0))
 }
 
 #[cfg(test)]
@@ -245,14 +257,17 @@ mod tests {
 
     #[test]
     fn the_slowdown_of_the_most_threads_measured_is_that_of_all_more() {
-        let at = |median| Interval { median, low: median, high: median };
-        let slowdowns = [(2, at(1.25)), (4, at(1.5))];
+        let at = |threads, median| Slowdown {
+            threads,
+            factor: Interval { median, low: median, high: median },
+        };
+        let slowdowns = [at(2, 1.25), at(4, 1.5)];
         let expected = [(1, 1.0), (2, 1.25), (3, 1.25), (4, 1.5), (1024, 1.5)];
         for (threads, factor) in expected {
             assert_eq!(slowdown(&slowdowns, threads), factor, "{threads} threads");
         }
         assert_eq!(slowdown(&[], 8), 1.0);
-        assert_eq!(slowdown(&[(2, at(0.9))], 8), 1.0);
+        assert_eq!(slowdown(&[at(2, 0.9)], 8), 1.0);
     }
 
     #[test]

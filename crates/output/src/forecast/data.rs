@@ -2,8 +2,8 @@
 
 use super::{ASSUMPTIONS, Report};
 use crate::json;
-use rayweave_measure::forecast::{ForecastCurve, ForecastPoint};
-use rayweave_measure::{Interval, Machine, Noise};
+use rayweave_measure::forecast::{ForecastCurve, ForecastPoint, Slowdown};
+use rayweave_measure::{Machine, Noise};
 use rayweave_predict::{Law, Overheads};
 use serde::Serialize;
 
@@ -22,7 +22,7 @@ struct Object<'a> {
     machine: &'a Machine,
     noise: &'a Noise,
     assumptions: [&'a str; 5],
-    slowdowns: Vec<Slowdown>,
+    slowdowns: &'a [Slowdown],
     reference_median_ns: Option<f64>,
     results: Vec<Item<'a>>,
     laws: Vec<Laws<'a>>,
@@ -30,18 +30,10 @@ struct Object<'a> {
 }
 
 #[derive(Serialize)]
-struct Slowdown {
-    threads: usize,
-    factor: Interval,
-}
-
-#[derive(Serialize)]
 struct Item<'a> {
     strategy: &'a str,
-    threads: usize,
-    predicted: f64,
-    /// Null for more threads than the machine has.
-    measured: Option<Interval>,
+    #[serde(flatten)]
+    point: &'a ForecastPoint,
     difference: Option<f64>,
 }
 
@@ -80,9 +72,13 @@ struct Costs {
     steal_ns: f64,
 }
 
-pub(super) fn json(report: &Report<'_>) -> String {
+pub(super) fn json<'a>(report: &Report<'a>) -> String {
     let forecast = report.forecast;
-    let slowdown = |&(threads, factor): &(usize, _)| Slowdown { threads, factor };
+    let item = |strategy, point: &'a ForecastPoint| Item {
+        strategy,
+        point,
+        difference: point.difference(),
+    };
     let items = forecast
         .curves
         .iter()
@@ -98,22 +94,12 @@ pub(super) fn json(report: &Report<'_>) -> String {
         machine: report.machine,
         noise: report.noise,
         assumptions: ASSUMPTIONS,
-        slowdowns: forecast.slowdowns.iter().map(slowdown).collect(),
+        slowdowns: &forecast.slowdowns,
         reference_median_ns: forecast.comparison.reference_ns(),
         results: items.collect(),
         laws: forecast.curves.iter().map(laws).collect(),
         unavailable: &forecast.unavailable,
     })
-}
-
-fn item<'a>(strategy: &'a str, point: &ForecastPoint) -> Item<'a> {
-    Item {
-        strategy,
-        threads: point.threads,
-        predicted: point.predicted,
-        measured: point.measured,
-        difference: point.difference(),
-    }
 }
 
 fn laws(curve: &ForecastCurve) -> Laws<'_> {

@@ -3,7 +3,7 @@
 use super::{ASSUMPTIONS, Report};
 use crate::compare::complaint;
 use crate::{machine, noise, style};
-use rayweave_measure::forecast::{ForecastCurve, ForecastPoint};
+use rayweave_measure::forecast::{ForecastCurve, ForecastPoint, Slowdown};
 
 const NONE: &str = "-";
 
@@ -106,7 +106,7 @@ fn check(curve: &ForecastCurve, point: &ForecastPoint) -> Option<[String; 5]> {
 /// What the predictions were made from.
 fn basis(report: &Report<'_>) -> String {
     let forecast = report.forecast;
-    let slowdowns = forecast.slowdowns.iter().map(|&(threads, slowdown)| {
+    let slowdowns = forecast.slowdowns.iter().map(|&Slowdown { threads, factor: slowdown }| {
         let used = if slowdown.median < 1.0 { "by chance, 1 is used" } else { "used" };
         let slowdown = style::precise_interval(slowdown);
         format!("{threads} threads that share nothing take {slowdown} times as long as one, each: {used}.")

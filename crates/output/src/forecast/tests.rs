@@ -1,7 +1,7 @@
 use super::*;
 use crate::compare::fixtures::{noise, row};
 use rayweave_contract::Image;
-use rayweave_measure::forecast::{ForecastCurve, ForecastPoint};
+use rayweave_measure::forecast::{ForecastCurve, ForecastPoint, Slowdown};
 use rayweave_measure::{Comparison, Interval, Measurement};
 use rayweave_predict::{Law, Overheads};
 use serde_json::Value;
@@ -28,7 +28,10 @@ fn forecast() -> Forecast {
     Forecast {
         curves: vec![curve("queue", points, amdahl, usl), curve("lock", few, None, None)],
         unavailable: vec!["omp: unavailable here: no compiler".to_owned()],
-        slowdowns: vec![(2, Interval { median: 1.05, low: 1.0, high: 1.1 })],
+        slowdowns: vec![Slowdown {
+            threads: 2,
+            factor: Interval { median: 1.05, low: 1.0, high: 1.1 },
+        }],
         comparison: Comparison {
             // The reference takes 50 ms; the lock gave another image.
             rows: vec![
