@@ -1,10 +1,10 @@
-//! Proof that strategies agree: each against the reference, bit for bit.
+//! Checks that every strategy gives the reference's image, bit for bit.
 //!
-//! Every strategy is prepared for every number of threads and size of tile, and the renderer so
-//! prepared renders every image twice: it has to draw the same image again, and to be the same
-//! after images of other sizes. Before each rendering the image is poisoned, so that a pixel
-//! that nobody writes shows itself, and a [`Recorder`] around the work knows who computed what.
-//! That as many threads compute as were asked for, a [`Rendezvous`] shows.
+//! Every strategy is prepared for every number of threads and size of tile. The same renderer
+//! renders every image twice, so its second rendering and images of other sizes are checked too.
+//! The image is filled with a sentinel before each rendering to find pixels that are not written.
+//! A [`Recorder`] around the work knows the tile and the thread of each pixel, and a [`Rendezvous`]
+//! counts the computing threads.
 
 use crate::catch_panic::catch_panic;
 use crate::computing_threads::Rendezvous;
@@ -17,82 +17,82 @@ use std::num::{NonZeroU32, NonZeroUsize};
 use std::time::Duration;
 use thiserror::Error;
 
-/// The times that a renderer draws each image.
+/// The number of times that a renderer renders each image.
 const REPETITIONS: usize = 2;
 
-/// A work and the size of the image that is made of it.
+/// A work to check with, and the size of its image.
 pub struct CheckCase<'a> {
-    /// What findings call it.
+    /// The name in findings.
     pub name: String,
-    /// In pixels.
+    /// The width of the image in pixels.
     pub width: u32,
-    /// In pixels.
+    /// The height of the image in pixels.
     pub height: u32,
-    /// What is rendered.
+    /// The work to render.
     pub work: Box<dyn Work + 'a>,
 }
 
-/// What is checked: every strategy with every number of threads, size of tile and case.
+/// A check of every strategy with every number of threads, size of tile and case.
 ///
-/// A strategy that starts no threads is checked as the one thread that it is.
+/// A strategy that starts no threads is checked with one thread.
 #[derive(Clone, Copy)]
 pub struct Check<'a> {
-    /// What gives the right image.
+    /// The strategy that gives the right image.
     pub reference: &'a dyn Strategy,
-    /// What has to give the same; the reference may be among them.
+    /// The strategies to check; the reference may be among them.
     pub strategies: &'a [&'a dyn Strategy],
-    /// What is rendered.
+    /// The works to render.
     pub cases: &'a [CheckCase<'a>],
-    /// Numbers of computing threads.
+    /// The numbers of computing threads.
     pub threads: &'a [NonZeroUsize],
-    /// Sides of a tile, in pixels.
+    /// The sides of a tile in pixels.
     pub tiles: &'a [NonZeroU32],
-    /// How long a strategy with too few threads is waited for; usually
+    /// The time to wait for missing threads, usually
     /// [`TIMEOUT`](crate::computing_threads::TIMEOUT).
     pub timeout: Duration,
 }
 
-/// How far a check is; told before each rendering.
+/// The progress of a check before each rendering.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CheckProgress {
     /// The strategy that is being checked.
     pub strategy: &'static str,
-    /// For so many computing threads.
+    /// The number of computing threads.
     pub threads: usize,
-    /// Renderings done; what is left out after a failure counts as done.
+    /// The number of renderings done; those left out after a failure count as done.
     pub done: usize,
-    /// Renderings altogether.
+    /// The number of all renderings.
     pub total: usize,
 }
 
-/// What a check found.
+/// The result of a check.
 #[derive(Clone, Debug)]
 pub struct Verdict {
-    /// What was checked.
+    /// The combinations that were checked.
     pub checked: Vec<Checked>,
     /// The number of images that were compared with the reference.
     pub compared: usize,
-    /// Everything that is wrong, strategy by strategy; empty when all agree.
+    /// All findings, strategy by strategy; empty if all strategies agree.
     pub findings: Vec<Finding>,
 }
 
-/// What a [`Check`] was: every strategy with every number of threads, size of tile and image.
+/// The combinations of a [`Check`]: every strategy with every number of threads, tile and image.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Checked {
-    /// Of the strategies.
+    /// The names of the strategies.
     pub strategies: Vec<&'static str>,
-    /// Name, width and height of each case.
+    /// The name, width and height of each case.
     pub images: Vec<(String, u32, u32)>,
-    /// Numbers of computing threads.
+    /// The numbers of computing threads.
     pub threads: Vec<usize>,
-    /// Sides of a tile, in pixels.
+    /// The sides of a tile in pixels.
     pub tiles: Vec<u32>,
 }
 
-/// Why nothing could be checked.
+/// An error that leaves nothing to check.
 #[derive(Debug, Error)]
 pub enum CheckError {
-    /// A case whose image cannot be.
+    /// A case has no possible image.
     #[error("{name}: {source}")]
     Image {
         /// The case.
@@ -100,7 +100,7 @@ pub enum CheckError {
         /// The reason.
         source: ImageError,
     },
-    /// The reference gave no image to compare with.
+    /// The reference failed.
     #[error("{name}: the reference failed: {message}")]
     Reference {
         /// The case.
@@ -111,7 +111,7 @@ pub enum CheckError {
 }
 
 impl Verdict {
-    /// Whether all strategies agree with the reference.
+    /// Returns whether all strategies agree with the reference.
     #[must_use]
     pub fn passed(&self) -> bool {
         self.findings.is_empty()
@@ -138,7 +138,7 @@ impl<'a> Check<'a> {
         for &strategy in self.strategies {
             for &threads in self.threads_of(strategy) {
                 let plans = self.tiles.iter().map(|&tile| Plan { threads, tile });
-                // Up to the first wrong number: each of too few would wait for the timeout again.
+                // Stop at the first wrong number, because each would wait for the timeout again.
                 let _ =
                     plans.clone().all(|plan| run.threads_are_right(strategy, plan, self.timeout));
                 plans.for_each(|plan| run.render_all(strategy, plan));
@@ -160,7 +160,7 @@ impl<'a> Check<'a> {
         }
     }
 
-    /// The numbers of threads that make a difference to `strategy`.
+    /// Returns the numbers of threads to check `strategy` with.
     fn threads_of(&self, strategy: &dyn Strategy) -> &'a [NonZeroUsize] {
         match strategy.threads() {
             Threads::None => &[NonZeroUsize::MIN],
@@ -169,8 +169,8 @@ impl<'a> Check<'a> {
     }
 
     fn reference_image(&self, case: &CheckCase<'_>) -> Result<Image, CheckError> {
-        // Black, where every other image starts as poison: what the reference fails to write
-        // differs.
+        // Black, where every other image starts as the sentinel: pixels that the reference does
+        // not write differ.
         let mut image = Image::new(case.width, case.height)
             .map_err(|source| CheckError::Image { name: case.name.clone(), source })?;
         let tile = self.tiles.first().copied().unwrap_or(NonZeroU32::MIN);
@@ -181,9 +181,9 @@ impl<'a> Check<'a> {
     }
 }
 
-/// A check under way.
+/// The state of a running check.
 struct Run<'a> {
-    /// Each case with the reference's image of it.
+    /// The cases, each with the reference's image.
     pairs: &'a [(&'a CheckCase<'a>, Image)],
     verdict: Verdict,
     done: usize,
@@ -247,7 +247,7 @@ impl Run<'_> {
                 for fault in faults {
                     self.found(strategy, plan.threads, Some(render.clone()), fault);
                 }
-                // What is wrong already need not be shown to be wrong again.
+                // A second rendering would only repeat the findings.
                 break;
             }
             self.done += REPETITIONS;
@@ -266,7 +266,7 @@ impl Run<'_> {
     }
 }
 
-/// Renders into a poisoned image and says what is wrong with it, if anything.
+/// Renders into an image filled with the sentinel and returns the faults.
 fn render_and_compare(
     renderer: &mut dyn Renderer,
     threads: NonZeroUsize,
@@ -293,7 +293,8 @@ fn render_and_compare(
     faults.into_iter().flatten().collect()
 }
 
-/// Fewer than were asked for prove nothing: a thread may find all the work done.
+/// Returns a fault if there are more threads than expected. Fewer are none: a thread may come when
+/// the others have done all the work.
 fn too_many_threads(expected: usize, found: usize) -> Option<Fault> {
     (found > expected).then_some(Fault::Threads { expected, found })
 }
@@ -314,8 +315,8 @@ fn difference(expected: &Image, found: &Image, record: &TileRecord) -> Option<Fa
     }))
 }
 
-/// Pixels computed several times, or written without being computed. Those that were not written
-/// either are a difference already.
+/// Returns a fault if pixels were computed several times, or written without being computed. Pixels
+/// that were not written either are a difference already.
 fn not_once(found: &Image, record: &TileRecord) -> Option<Fault> {
     let times = record.times_computed(found.width(), found.height());
     let mut wrong =

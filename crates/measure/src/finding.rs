@@ -1,19 +1,19 @@
-//! What can be wrong with a strategy, told such that its author knows where to look.
+//! The faults that a check can find in a strategy, with the pixel, the tile and the thread.
 
 use crate::recorder::Computation;
 use rayweave_contract::Rgb;
 use std::fmt;
 
-/// One thing that a check found wrong.
+/// A fault of a strategy, and the rendering in which it shows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
     /// The strategy's name.
     pub strategy: &'static str,
     /// The number of computing threads asked for.
     pub threads: usize,
-    /// The image in which it shows; `None` where it is not about one.
+    /// The rendering in which the fault shows; `None` if it is not about one.
     pub render: Option<CheckedRender>,
-    /// What is wrong.
+    /// The fault.
     pub fault: Fault,
 }
 
@@ -22,62 +22,62 @@ pub struct Finding {
 pub struct CheckedRender {
     /// The name of the work.
     pub scene: String,
-    /// In pixels.
+    /// The width of the image in pixels.
     pub width: u32,
-    /// In pixels.
+    /// The height of the image in pixels.
     pub height: u32,
     /// The side of a tile, in pixels.
     pub tile: u32,
-    /// 1, or 2 for the same image rendered once more by the same renderer.
+    /// The repetition: 1, or 2 if the same renderer renders the image again.
     pub repetition: usize,
 }
 
-/// What is wrong. Pixels are counted over the whole image; the first is the first in reading
-/// order.
+/// A fault of a strategy. Pixels are counted over the whole image; the first one is the first in
+/// reading order.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Fault {
     /// The image is not the reference's.
     Different(ImageDifference),
-    /// Pixels are right, or at least written, but were not computed exactly once.
+    /// Pixels were written, but not computed exactly once.
     NotOnce {
         /// The number of such pixels.
         pixels: usize,
-        /// Column of the first.
+        /// The column of the first.
         x: u32,
-        /// Row of the first.
+        /// The row of the first.
         y: u32,
         /// Every computation of the first; empty when it was written without being computed.
         computations: Vec<Computation>,
     },
     /// The number of computing threads is not the one asked for.
     Threads {
-        /// What it should be: the number asked for, or 1 for a strategy that starts no threads.
+        /// The expected number: that asked for, or 1 for a strategy that starts no threads.
         expected: usize,
-        /// How many computed.
+        /// The number of threads that computed.
         found: usize,
     },
-    /// The strategy returned an error or panicked: its message.
+    /// The strategy returned an error or panicked, with this message.
     Failed(String),
 }
 
-/// Where an image is not the reference's.
+/// The pixels in which an image differs from the reference.
 #[derive(Clone, Debug)]
 pub struct ImageDifference {
     /// The number of differing pixels.
     pub pixels: usize,
-    /// Column of the first.
+    /// The column of the first.
     pub x: u32,
-    /// Row of the first.
+    /// The row of the first.
     pub y: u32,
-    /// What the reference has there.
+    /// The reference's colour there.
     pub expected: Rgb,
-    /// What was found there; `None` when nobody wrote it.
+    /// The colour found there; `None` if the pixel was not written.
     pub found: Option<Rgb>,
-    /// Who computed it last; `None` when nobody did.
+    /// The last computation of the pixel; `None` if there was none.
     pub computation: Option<Computation>,
 }
 
-/// Bits are compared, so that a NaN equals itself.
+/// Compares the bits of colours, so that a NaN equals itself.
 impl PartialEq for ImageDifference {
     fn eq(&self, other: &Self) -> bool {
         let bits = |color: Rgb| color.map(f32::to_bits);
@@ -150,7 +150,7 @@ impl fmt::Display for ImageDifference {
     }
 }
 
-/// A colour such that different bits are different text.
+/// A colour whose text differs if its bits differ.
 struct Color(Rgb);
 
 impl fmt::Display for Color {

@@ -1,17 +1,17 @@
-//! Proof that strategies agree, and the timing protocol with its statistics. Prints nothing.
+//! Checks that strategies agree, and measures, explains and predicts their times. Prints nothing.
 //!
-//! * [`check`]: every strategy against the reference, bit for bit, with the pixel, the tile and the
-//!   thread that differ;
-//! * [`compare`]: interleaved rounds in which every timed image is verified;
-//! * [`overhead`]: what a strategy costs beside its work, on synthetic work;
-//! * [`forecast`]: what more threads would make of an image, beside what those here make of it;
-//! * [`explanation`]: what becomes of the efficiency that a strategy loses, by an account of every
-//!   thread's time ([`efficiency`]);
-//! * [`machine`]: what was measured on, and with what;
-//! * [`noise`]: what else went on at the time.
+//! * [`check`]: compares every strategy with the reference, bit for bit, and finds the pixel, the
+//!   tile and the thread of a difference;
+//! * [`compare`]: times strategies in interleaved rounds and verifies every timed image;
+//! * [`overhead`]: measures the cost of a strategy beside its work, on synthetic work;
+//! * [`forecast`]: predicts speed-ups on more threads than the machine has;
+//! * [`explanation`]: splits the efficiency that a strategy loses by cause, from a breakdown of
+//!   every thread's time ([`efficiency`]);
+//! * [`machine`]: the facts about the machine and the program of a measurement;
+//! * [`noise`]: the other activity on the machine during a measurement.
 //!
-//! What watches a rendering is a [`Work`](rayweave_contract::Work) around a `Work` ([`recorder`],
-//! [`timeline`]) or in place of it ([`computing_threads`]): no strategy has a line for any of it.
+//! An observer of a rendering is a [`Work`](rayweave_contract::Work) around a `Work` ([`recorder`],
+//! [`timeline`]) or in place of it ([`computing_threads`]). Strategies have no code for it.
 
 pub mod calibration;
 mod catch_panic;

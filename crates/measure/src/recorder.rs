@@ -1,4 +1,4 @@
-//! Who computed what, and how much: a work around a work.
+//! Observers around a work: a recorder of the tiles and their threads, and a counter of rays.
 
 use rayweave_contract::{Rect, Tile, Work};
 use std::fmt;
@@ -6,9 +6,9 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::thread::{self, ThreadId};
 
-/// Records every tile that the work inside completes, and on which thread.
+/// Records every tile that the inner work completes, and its thread.
 ///
-/// It takes a lock for each tile and keeps an entry for each: for proofs, never for timed runs.
+/// It takes a lock and keeps an entry for each tile. Use it for checks, not for timed runs.
 pub struct Recorder<'a> {
     work: &'a dyn Work,
     log: Mutex<Log>,
@@ -29,29 +29,29 @@ pub struct ComputingThread {
     pub name: Option<String>,
 }
 
-/// A tile, and the thread that computed it.
+/// The computation of a tile by a thread.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Computation {
-    /// As the work was asked for it: a single pixel for a strategy that deals in pixels.
+    /// The tile that the work was called with; a single pixel for a strategy with that granularity.
     pub tile: Rect,
-    /// Who computed it.
+    /// The thread that computed it.
     pub thread: ComputingThread,
 }
 
-/// What a [`Recorder`] saw of one rendering.
+/// The computations of one rendering, recorded by a [`Recorder`].
 #[derive(Debug)]
 pub struct TileRecord {
     log: Log,
 }
 
 impl<'a> Recorder<'a> {
-    /// Records what is rendered of `work`.
+    /// Returns a recorder around `work`.
     #[must_use]
     pub fn new(work: &'a dyn Work) -> Self {
         Self { work, log: Mutex::default() }
     }
 
-    /// What was recorded.
+    /// Returns the record.
     #[must_use]
     pub fn finish(self) -> TileRecord {
         TileRecord { log: self.log.into_inner().unwrap_or_else(PoisonError::into_inner) }
@@ -81,21 +81,21 @@ impl Log {
 }
 
 impl TileRecord {
-    /// The number of threads that computed.
+    /// Returns the number of threads that computed.
     #[must_use]
     pub fn threads(&self) -> usize {
         self.log.threads.len()
     }
 
-    /// The tiles that contain pixel `(x, y)`, in the order of completion.
+    /// Returns the computations of pixel `(x, y)`, in the order of completion.
     #[must_use]
     pub fn of_pixel(&self, x: u32, y: u32) -> Vec<Computation> {
         let containing = self.log.computations.iter().filter(|(tile, _)| tile.contains(x, y));
         containing.map(|&(tile, thread)| self.computation(tile, thread)).collect()
     }
 
-    /// How often each pixel of an image of this size was computed, row by row. What was computed
-    /// outside of the image is not counted.
+    /// Returns the number of computations of each pixel of an image of this size, row by row.
+    /// Pixels outside of the image are not counted.
     #[must_use]
     pub fn times_computed(&self, width: u32, height: u32) -> Vec<u32> {
         let mut times = vec![0; width as usize * height as usize];
@@ -115,27 +115,27 @@ impl TileRecord {
     }
 }
 
-/// What a tile costs, by its rectangle; `None` if that does not tell.
+/// A function that returns the number of primary rays of a tile, or `None` if it is unknown.
 pub type RayCost<'a> = dyn Fn(Rect) -> Option<u64> + Sync + 'a;
 
-/// Adds up what the tiles cost that the work inside completes: of any number of tiles a single sum.
-/// An addition for each tile is little, but more than nothing: not for timed runs.
+/// Adds up the primary rays of all tiles that the inner work completes. The addition costs little,
+/// but do not use it for timed runs.
 pub struct RayCounter<'a> {
     work: &'a dyn Work,
     cost: &'a RayCost<'a>,
     sum: AtomicU64,
-    /// Whether the cost of a tile was unknown.
+    /// Whether the rays of a tile were unknown.
     unknown: AtomicBool,
 }
 
 impl<'a> RayCounter<'a> {
-    /// Adds up what is rendered of `work`.
+    /// Returns a counter around `work`.
     #[must_use]
     pub fn new(work: &'a dyn Work, cost: &'a RayCost<'a>) -> Self {
         Self { work, cost, sum: AtomicU64::new(0), unknown: AtomicBool::new(false) }
     }
 
-    /// The sum, unless the cost of a tile was unknown.
+    /// Returns the number of rays, or `None` if that of a tile was unknown.
     #[must_use]
     pub fn finish(self) -> Option<u64> {
         (!self.unknown.into_inner()).then_some(self.sum.into_inner())
@@ -206,9 +206,9 @@ mod tests {
         assert_eq!(record.of_pixel(0, 1), []);
     }
 
-    /// Catches a tile that is not counted, or counted by something other than its own rect.
+    /// Catches a tile that is not counted, or counted by another rectangle than its own.
     #[test]
-    fn costs_of_all_threads_add_up() {
+    fn rays_of_all_threads_add_up() {
         let cost =
             |rect: Rect| (rect.x < 4).then(|| u64::from(100 * rect.x + 10 * rect.y + rect.width));
         let counter = RayCounter::new(&Grey, &cost);

@@ -1,8 +1,7 @@
-//! Who computed what, and from when to when: a work around a work.
+//! Records the begin and end of every piece on every thread: an observer around a work.
 //!
-//! Each thread writes to memory of its own, which is there before the rendering begins; nothing is
-//! shared on the way. What remains are two looks at the clock and a few stores, which
-//! [`RecordingCost::here`] measures.
+//! Each thread writes to its own memory, which is allocated before the rendering begins. Recording
+//! a piece then costs two clock readings and a few stores; [`RecordingCost::here`] measures it.
 
 mod cost;
 
@@ -17,37 +16,37 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, ThreadId};
 use std::time::Instant;
 
-/// What one rendering looked like from inside.
+/// The pieces of one rendering, by thread.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Timeline {
-    /// How long it took, in nanoseconds.
+    /// The time of the rendering, in nanoseconds.
     pub wall_ns: u64,
-    /// One for each thread that computed, in the order of their first pieces.
+    /// The lanes, one for each thread that computed, in the order of their first pieces.
     pub lanes: Vec<TimelineLane>,
 }
 
-/// What one thread computed.
+/// The pieces of one thread.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TimelineLane {
     /// The thread's name, where it has one.
     pub name: Option<String>,
-    /// In the order of time; one at least. No two overlap.
+    /// The pieces in order of time. There is at least one, and no two overlap.
     pub pieces: Vec<Piece>,
 }
 
-/// A tile, as the work was asked for it: a single pixel for a strategy that deals in pixels.
+/// A tile that the work was called with; a single pixel for a strategy with that granularity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Piece {
-    /// Which pixels.
+    /// The rectangle of its pixels.
     pub rect: Rect,
-    /// When the work was asked, in nanoseconds since the rendering began.
+    /// The time of its begin, in nanoseconds since the rendering began.
     pub begin_ns: u64,
-    /// When it was done, likewise.
+    /// The time of its end, in nanoseconds since the rendering began.
     pub end_ns: u64,
 }
 
 impl Timeline {
-    /// The pieces of all threads together.
+    /// Returns the number of pieces of all threads.
     #[must_use]
     pub fn pieces(&self) -> usize {
         self.lanes.iter().map(|lane| lane.pieces.len()).sum()
@@ -55,18 +54,18 @@ impl Timeline {
 }
 
 impl TimelineLane {
-    /// The time spent on pieces, in nanoseconds.
+    /// Returns the time spent on pieces, in nanoseconds.
     #[must_use]
     pub fn busy_ns(&self) -> u64 {
         self.pieces.iter().map(Piece::ns).sum()
     }
 
-    /// The time between each piece and the next, in nanoseconds.
+    /// Returns the time between each piece and the next, in nanoseconds.
     pub fn gaps_ns(&self) -> impl Iterator<Item = u64> {
         self.pieces.windows(2).map(|pair| pair[1].begin_ns.saturating_sub(pair[0].end_ns))
     }
 
-    /// The pixels of all pieces.
+    /// Returns the number of pixels of all pieces.
     #[must_use]
     pub fn pixels(&self) -> u64 {
         self.pieces
@@ -77,32 +76,32 @@ impl TimelineLane {
 }
 
 impl Piece {
-    /// How long it took, in nanoseconds.
+    /// Returns the time of the piece, in nanoseconds.
     #[must_use]
     pub fn ns(&self) -> u64 {
         self.end_ns.saturating_sub(self.begin_ns)
     }
 }
 
-/// Records when the work inside is asked for a tile, when it is done, and by which thread, in one
-/// rendering.
+/// Records the begin, the end and the thread of every tile of one rendering of the inner work.
 pub struct TimeRecorder<'a> {
     work: &'a dyn Work,
     origin: Instant,
-    /// Of all recorders of this process: a thread knows by it whether the lane that it remembers is
-    /// one of these.
+    /// A number unique in this process. A thread compares it to find out whether the lane that it
+    /// remembers belongs to this recorder.
     number: u64,
     lanes: Mutex<Lanes>,
 }
 
-/// Locked by a thread that comes for the first time, never for a tile.
+/// The lanes in use and the free ones. A thread locks them at its first tile only.
 struct Lanes {
     taken: Vec<(ThreadId, Option<String>, Arc<Pieces>)>,
-    /// With room, for threads that come.
+    /// Lanes with reserved memory, for threads to come.
     free: Vec<Arc<Pieces>>,
 }
 
-/// Only its own thread ever locks it while an image is rendered, so nobody waits.
+/// The pieces of a thread. Only that thread locks them during a rendering, so the lock is
+/// uncontended.
 type Pieces = Mutex<Vec<Piece>>;
 
 static RECORDERS: AtomicU64 = AtomicU64::new(0);
@@ -113,15 +112,14 @@ thread_local! {
 }
 
 impl<'a> TimeRecorder<'a> {
-    /// Will record a rendering of `work` on `threads` threads, with room for `pieces` of them on
-    /// each. More of either find place too, but take their time for it.
+    /// Returns a recorder for a rendering of `work`, with memory for `pieces` pieces on each of
+    /// `threads` threads. It allocates while recording if there are more of either.
     #[must_use]
     pub fn new(work: &'a dyn Work, threads: usize, pieces: usize) -> Self {
         let untouched =
             Piece { rect: Rect { x: 0, y: 0, width: 0, height: 0 }, begin_ns: 0, end_ns: 0 };
         let room = || {
-            // Written once: the operating system hands out memory at the first touch, which takes
-            // time.
+            // Write to the memory once: the operating system maps a page at the first access.
             let mut pieces = vec![untouched; pieces];
             pieces.clear();
             Arc::new(Mutex::new(pieces))
@@ -137,19 +135,18 @@ impl<'a> TimeRecorder<'a> {
         }
     }
 
-    /// What was recorded of the rendering that began at `begin` and ended at `end`.
+    /// Returns the time line of the rendering that began at `begin` and ended at `end`.
     #[must_use]
     pub fn finish(self, begin: Instant, end: Instant) -> Timeline {
         let before = self.nanoseconds(begin);
         let lanes = self.lanes.into_inner().unwrap_or_else(PoisonError::into_inner);
         let lane = |(_, name, pieces): (_, _, Arc<Pieces>)| {
-            // Pooled threads go on and remember the lane, so its contents are taken out of it.
+            // Pooled threads live on and remember the lane, so take the contents out of it.
             let mut pieces = mem::take(&mut *pieces.lock().unwrap_or_else(PoisonError::into_inner));
             for piece in &mut pieces {
                 piece.begin_ns = piece.begin_ns.saturating_sub(before);
                 piece.end_ns = piece.end_ns.saturating_sub(before);
             }
-            // There was room for more than there are.
             pieces.shrink_to_fit();
             TimelineLane { name, pieces }
         };
@@ -197,7 +194,8 @@ impl fmt::Debug for TimeRecorder<'_> {
     }
 }
 
-/// 0 if they are the other way round. A `u64` of nanoseconds lasts for 584 years.
+/// Returns the nanoseconds from `begin` to `end`; 0 if `end` is earlier. A `u64` of nanoseconds
+/// lasts for 584 years.
 fn nanoseconds_between(begin: Instant, end: Instant) -> u64 {
     let duration = end.saturating_duration_since(begin);
     duration.as_secs() * 1_000_000_000 + u64::from(duration.subsec_nanos())
@@ -220,8 +218,8 @@ mod tests {
         recorder.render(&mut Tile::row(x, 1, &mut [[1.0; 3]; 2]));
     }
 
-    /// Catches a lane that is not its thread's own, an end before the work's, and times that count
-    /// from elsewhere.
+    /// Catches a lane with pieces of another thread, an end before the work's, and times that are
+    /// not since the rendering's begin.
     #[test]
     fn each_thread_has_its_pieces_in_order() {
         let recorder = TimeRecorder::new(&Sleep, 1, 1);

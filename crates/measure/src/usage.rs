@@ -1,31 +1,30 @@
-//! What processes have used, as the system counts it.
+//! The CPU time and the context switches of processes, as the operating system counts them.
 
 use std::time::Duration;
 
-/// What a process, all of its threads together, has used since it began.
+/// The resources that a process has used since it began, all of its threads together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Usage {
-    /// Time on a processor, the system's work for it included.
+    /// The CPU time in user and system mode.
     pub cpu: Duration,
-    /// How often a thread was taken off its processor while it had something to do: somebody else's
-    /// turn.
+    /// The number of times that a thread lost its core although it could have continued.
     pub involuntary_switches: u64,
 }
 
 impl Usage {
-    /// Of this process; `None` where the system does not tell.
+    /// Returns the usage of this process; `None` if the system does not provide it.
     #[must_use]
     pub fn of_this_process() -> Option<Self> {
         system::of_this_process()
     }
 
-    /// Of this process's children that have ended; `None` where the system does not tell.
+    /// Returns the usage of the children that have ended; `None` if the system does not provide it.
     #[must_use]
     pub fn of_ended_children() -> Option<Self> {
         system::of_ended_children()
     }
 
-    /// What came since `earlier`.
+    /// Returns the usage since `earlier`.
     #[must_use]
     pub fn since(self, earlier: Self) -> Self {
         Self {
@@ -36,7 +35,7 @@ impl Usage {
         }
     }
 
-    /// Both together.
+    /// Returns the sum of both usages.
     #[must_use]
     pub fn plus(self, other: Self) -> Self {
         Self {
@@ -69,7 +68,7 @@ mod system {
         })
     }
 
-    /// Never negative.
+    /// Returns `time`, which is never negative, as a duration.
     fn duration(time: TimeVal) -> Duration {
         let whole = Duration::from_secs(u64::try_from(time.tv_sec()).unwrap_or(0));
         whole + Duration::from_micros(u64::try_from(time.tv_usec()).unwrap_or(0))
@@ -94,7 +93,7 @@ mod tests {
     use super::*;
     use std::thread;
 
-    /// Catches the time of the calling thread alone, and that of threads that have ended left out.
+    /// Catches a usage of the calling thread alone, or without threads that have ended.
     #[test]
     fn the_time_of_every_thread_counts() {
         const BUSY: Duration = Duration::from_millis(20);

@@ -1,23 +1,23 @@
-//! What it costs to record.
+//! Measures the cost of recording a piece.
 
 use super::{TimeRecorder, TimelineLane};
 use crate::statistics::median;
 use rayweave_contract::{Tile, Work};
 use std::time::Instant;
 
-/// What the recording of a piece adds to a rendering, in nanoseconds.
+/// The time that recording a piece adds to a rendering, in nanoseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RecordingCost {
-    /// To the time of the piece itself: the work's share of two looks at the clock.
+    /// The time added to the piece itself, by the two clock readings around the work.
     pub inside_ns: f64,
-    /// To the time between it and the next.
+    /// The time added between the piece and the next.
     pub outside_ns: f64,
 }
 
-/// How often it is measured; the median keeps out what else the machine does.
+/// The number of batches. Their median is robust against interference.
 const BATCHES: usize = 21;
 
-/// Pieces of a batch.
+/// The number of pieces of a batch.
 const PIECES: u32 = 2000;
 
 struct Nothing;
@@ -27,7 +27,7 @@ impl Work for Nothing {
 }
 
 impl RecordingCost {
-    /// Records work that does nothing. Takes a few milliseconds.
+    /// Measures the cost on this machine with work that does nothing. It takes a few milliseconds.
     #[must_use]
     pub fn here() -> Self {
         let lanes: Vec<TimelineLane> = (0..BATCHES).filter_map(|_| batch()).collect();
