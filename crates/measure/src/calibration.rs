@@ -1,4 +1,4 @@
-//! What a strategy's threads cost it here, as a simulation needs it: from outside, on synthetic
+//! Measures the overheads of a strategy that a simulation needs, from outside and on synthetic
 //! work.
 
 use crate::overhead::{of_pixels, step};
@@ -9,20 +9,20 @@ use rayweave_contract::{Granularity, Output, Policy, Renderer, Scheduling, Strat
 use rayweave_predict::{Access, Overheads, simulate};
 use std::num::NonZeroUsize;
 
-/// Times that everything is rendered; the lower quartile counts.
+/// The number of times that everything is rendered; the lower quartile is used.
 const REPETITIONS: usize = 25;
 
 /// A piece long enough for every thread to get one, in nanoseconds.
 const LONG_PIECE: f64 = 200e3;
 
-/// Pieces of the rendering of which half must be stolen, and nanoseconds of each.
+/// The number of pieces of the rendering half of which must be stolen, and the nanoseconds of each.
 const STOLEN: (u32, f64) = (64, 10e3);
 
-/// Measures the overheads of `strategies`, taking turns, on one and on `threads` threads.
+/// Measures the overheads of `strategies` in interleaved rounds, on one and on `threads` threads.
 ///
 /// # Errors
 ///
-/// The reference, which steps are timed with, or one of the strategies fails: what it says.
+/// The reference, which steps are timed with, or one of the strategies fails, with this message.
 pub fn calibrate(
     reference: &dyn Strategy,
     strategies: &[&dyn Strategy],
@@ -45,17 +45,17 @@ pub fn calibrate(
     Ok(strategies.iter().zip(&rounds).map(of).collect())
 }
 
-/// What is rendered.
+/// The images to render.
 struct Workloads {
     probe: DispatchProbe,
     single: TimedImage,
-    /// A long piece, and one twice as long.
+    /// One long piece, and one twice as long.
     alone: [TimedImage; 2],
-    /// One for each thread, and so too.
+    /// One long piece for each thread, and one twice as long for each.
     together: [TimedImage; 2],
-    /// A load that is spread evenly.
+    /// A load spread evenly over the pieces.
     spread: TimedImage,
-    /// The same load in the latter half of the pieces.
+    /// The same load in the second half of the pieces.
     late: TimedImage,
 }
 
@@ -92,7 +92,7 @@ impl Workloads {
     }
 }
 
-/// In nanoseconds, of what [`Workloads`] has; of columns the short and the long one's.
+/// The times of the images of [`Workloads`], in nanoseconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Times {
     single: f64,
@@ -105,7 +105,7 @@ struct Times {
 }
 
 impl Times {
-    /// Each by itself, before anything is subtracted.
+    /// Returns the lower quartile of each time, before any are subtracted.
     fn least_disturbed(rounds: &[Self]) -> Self {
         let of = |of: fn(&Self) -> f64| {
             lower_quartile(&rounds.iter().map(of).collect::<Vec<_>>()).unwrap_or(0.0)
@@ -122,11 +122,13 @@ impl Times {
     }
 }
 
-/// From outside nothing tells what of a piece's dispatch one thread at a time does. Where all
-/// threads share something, that much of it is taken for it as did not become faster by more
-/// threads, and what became slower is the handover.
+/// Returns the overheads that `times` give.
+///
+/// A measurement from outside cannot tell which part of a piece's dispatch is a critical section.
+/// Where all threads share something, the part of dispatch that does not scale is modelled as a
+/// critical section, and the time that several threads add to dispatch as its handover.
 fn overheads(policy: Policy, threads: usize, times: &Times) -> Overheads {
-    // What comes out below 0 is noise.
+    // A slope below 0 is noise.
     let dispatch = |times| DispatchProbe::slope(times).max(0.0);
     let (one, all) = match policy.granularity {
         Granularity::Band => (0.0, 0.0),
@@ -137,7 +139,7 @@ fn overheads(policy: Policy, threads: usize, times: &Times) -> Overheads {
         && matches!(policy.scheduling, Scheduling::WorkStealing | Scheduling::RecursiveSplit);
     let overheads = Overheads {
         start: times.single,
-        // Whoever begins later ends later.
+        // A thread that begins later ends later.
         next_start: (without_pieces(times.together) - without_pieces(times.alone)).max(0.0)
             / others,
         piece: one,
@@ -164,21 +166,22 @@ fn overheads(policy: Policy, threads: usize, times: &Times) -> Overheads {
     }
 }
 
-/// What a rendering takes besides its pieces, from the time of one and of another whose pieces are
-/// twice as long: threads that slow each other down lengthen the pieces, not this.
+/// Returns the time of a rendering without its pieces, from one time and from another with pieces
+/// twice as long. Threads that slow each other down make the pieces longer, but not this.
 fn without_pieces([single, twice]: [f64; 2]) -> f64 {
     2.0 * single - twice
 }
 
-/// What a theft costs, by how much longer the late load takes than the one that is spread: less
-/// what it would take longer if thefts cost nothing, and by how much each nanosecond of a theft
-/// delays the end. Both are simulated.
+/// Returns the cost of a theft, given that the late load takes `longer` than the spread one. Two
+/// simulations give the part that is there without a cost of thefts, which is subtracted, and the
+/// delay of the end for each nanosecond of a theft, which divides the rest.
 fn price_of_theft(policy: Policy, threads: usize, longer: f64) -> f64 {
     let late = |steal| simulated_late(policy, threads, steal);
     (longer - late(0.0)).max(0.0) / (late(1.0) - late(0.0)).max(1.0)
 }
 
-/// How much longer than the load that is spread the late one takes where a theft costs `steal`.
+/// Returns the simulated time that the late load takes longer than the spread one if a theft costs
+/// `steal`.
 fn simulated_late(policy: Policy, threads: usize, steal: f64) -> f64 {
     let (pieces, ns) = STOLEN;
     let late: Vec<f64> =
@@ -194,7 +197,7 @@ fn simulated_late(policy: Policy, threads: usize, steal: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// The columns differ by 2^14 - 2^8 pieces.
+    /// The difference in length of the two columns: 2^14 - 2^8 pieces.
     const PIECES: f64 = 16_128.0;
 
     fn times(all: f64) -> Times {
@@ -215,7 +218,7 @@ mod tests {
 
     /// Catches a dispatch that is counted twice, or in the wrong place.
     #[test]
-    fn what_is_shared_takes_what_threads_do_not_speed_up() {
+    fn dispatch_that_does_not_scale_is_a_critical_section() {
         let plain = Overheads { start: 7.0, next_start: 3.0, piece: 10.0, ..Overheads::default() };
         assert_eq!(of(Scheduling::Static, Output::InPlace, 14.0), plain);
         let steals = Policy {
@@ -239,10 +242,10 @@ mod tests {
         );
     }
 
-    /// Catches a price of stealing, or of another thread's start, where there is no other thread,
-    /// and one of pieces where there is one a thread.
+    /// Catches a cost of thefts or of another thread's start with one thread, and a cost of
+    /// dispatch with bands.
     #[test]
-    fn bands_have_no_dispatch_and_one_thread_nobody_to_steal_from() {
+    fn bands_have_no_dispatch_and_one_thread_has_no_thefts() {
         let policy = |piece| Policy {
             granularity: piece,
             scheduling: Scheduling::RecursiveSplit,
@@ -257,10 +260,9 @@ mod tests {
         );
     }
 
-    /// Catches pieces that cannot be dealt out evenly taken for the price of a theft, and several
-    /// thefts for one.
+    /// Catches an uneven split counted as the cost of a theft, and several thefts counted as one.
     #[test]
-    fn what_a_theft_costs_is_found_again() {
+    fn the_cost_of_a_theft_is_recovered() {
         for (scheduling, threads) in [
             (Scheduling::WorkStealing, 2),
             (Scheduling::WorkStealing, 5),
@@ -274,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn the_least_disturbed_of_each() {
+    fn each_time_is_the_lower_quartile() {
         let rounds = [1.0, 2.0, 3.0, 4.0, 5.0].map(|single| Times {
             single,
             late: 9.0 - single,

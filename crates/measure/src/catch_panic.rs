@@ -1,4 +1,4 @@
-//! Runs a strategy so that whatever it does wrong becomes an error message.
+//! Runs a strategy and returns its error or its panic as a message.
 
 use rayweave_contract::{StrategyError, panic_message};
 use std::panic::{AssertUnwindSafe, catch_unwind};

@@ -1,22 +1,22 @@
 //! The timing protocol: interleaved rounds in which every timed image is verified.
 //!
-//! * In each round every row is measured once, as [`rounds`](crate::rounds) has it.
+//! * In each of the [rounds](crate::rounds) every row is measured once.
 //! * A speed-up is the median over the rounds of the ratio to the reference in the same round.
-//! * The reference is measured a second time as the control: its "speed-up" over itself is 1, and
-//!   what its interval says instead is the error of the whole table.
+//! * The reference is measured a second time as the control. Its true speed-up is 1, so its
+//!   interval shows the error of the whole table.
 //! * Before the rounds each row renders once without being timed, and is verified; its rays are
 //!   counted then.
-//! * Preparing, poisoning the image and verifying it lie outside of the timed span.
+//! * Preparing, filling the image with the sentinel and verifying it are outside of the timed span.
 //! * A row that fails, or gives another image than the reference, is measured no further and gets
 //!   no figures; its samples so far stay. If it is the reference itself, no row gets figures.
-//! * A measurement that is [interrupted](Executor::is_interrupted) ends at once, and is of the
-//!   complete rounds before.
-//! * Several works that give the same image are measured [together](Protocol::run_together):
-//!   their rows take their turns in the same rounds, so times of one over times of another are
-//!   ratios within a round too.
+//! * A measurement that is [interrupted](Executor::is_interrupted) ends at once. Its figures are
+//!   those of the complete rounds.
+//! * Several works that give the same image are measured [together](Protocol::run_together): their
+//!   rows are measured in the same rounds, so times of one over times of another are ratios within
+//!   a round too.
 //!
-//! The protocol has an [`Executor`] do the rendering and the timing, so its logic is tested without
-//! either; [`InProcessExecutor`](crate::in_process::InProcessExecutor) is the real one.
+//! An [`Executor`] renders and takes the times, so the protocol is tested without either.
+//! [`InProcessExecutor`](crate::in_process::InProcessExecutor) renders in this process.
 
 #[cfg(test)]
 mod interrupt_tests;
@@ -38,13 +38,13 @@ use thiserror::Error;
 /// A strategy with a number of threads to be measured.
 #[derive(Clone, Copy)]
 pub struct Entry<'a> {
-    /// How the work is spread.
+    /// The strategy.
     pub strategy: &'a dyn Strategy,
     /// The number of computing threads.
     pub threads: NonZeroUsize,
 }
 
-/// Renders and times.
+/// Renders an entry and times it.
 pub trait Executor {
     /// Prepares `entry`, renders an image with it, and times both.
     ///
@@ -73,20 +73,20 @@ pub trait Executor {
     }
 }
 
-/// How far a comparison is; told before each rendering, outside of any timed span.
+/// The progress of a comparison before each rendering, outside of any timed span.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CompareProgress {
     /// The strategy that comes next.
     pub strategy: &'static str,
-    /// For so many computing threads.
+    /// The number of computing threads.
     pub threads: usize,
-    /// The rounds done; 0 during the warm-up too.
+    /// The number of rounds done; 0 during the warm-up too.
     pub rounds: usize,
     /// The share that is done, by rounds or by time, whichever ends first: 0 to 1.
     pub fraction: f64,
 }
 
-/// The measured rows.
+/// The measured rows of a reference, its control and some entries.
 #[derive(Clone, Debug)]
 pub struct Comparison {
     /// The reference, the control, then the entries in the order given.
@@ -99,10 +99,10 @@ pub struct Comparison {
     pub interrupted: bool,
 }
 
-/// Why nothing could be compared.
+/// An error that leaves nothing to compare.
 #[derive(Debug, Error)]
 pub enum CompareError {
-    /// There is no image to verify the others with.
+    /// The reference failed, so there is no image to verify the others with.
     #[error("the reference failed: {0}")]
     Reference(String),
     /// There are too few samples for an interval.
@@ -153,13 +153,13 @@ impl Protocol {
         executor: &mut dyn Executor,
         progress: impl FnMut(CompareProgress),
     ) -> Result<Comparison, CompareError> {
-        // One executor, one comparison.
+        // There is one comparison, because there is one executor.
         Ok(self.run_together(reference, entries, &mut [executor], progress)?.swap_remove(0))
     }
 
-    /// A comparison for each executor, as by [`Protocol::run`] but measured in the same rounds.
-    /// Each renders a work of its own, and all have to give the image that the first gives with
-    /// `reference`.
+    /// Measures a comparison for each executor, as [`Protocol::run`] does but in the same rounds.
+    /// Each executor renders a work of its own. All have to give the image that the first gives
+    /// with `reference`.
     ///
     /// # Errors
     ///
@@ -188,15 +188,14 @@ impl Protocol {
         let mut next_look = self.min_rounds.max(1);
         let mut interrupted_after = None;
         while let Some(slot) = rounds.next(executors[0].elapsed()) {
-            // Without its reference a round says nothing.
+            // Without its reference a comparison gets no figures.
             if slot.starts_round {
                 running = tables.iter().map(|rows| rows[0].passed()).collect();
             }
             if !running.contains(&true) {
                 break;
             }
-            // Not after each round: the more often one looks, the likelier an interval is narrow by
-            // chance.
+            // Not after each round: more looks make a narrow interval by chance more likely.
             if let Some(rounds) =
                 slot.round.filter(|&rounds| slot.starts_round && rounds >= next_look)
             {
@@ -234,7 +233,7 @@ impl Protocol {
             if complete < LEAST_VALUES {
                 return Err(CompareError::Interrupted(complete));
             }
-            // Of every row as many: what the broken round left behind has no counterpart.
+            // Samples of the incomplete round have no counterpart in other rows.
             tables.iter_mut().flatten().for_each(|row| row.truncate(complete));
         }
         let rounds = interrupted_after.unwrap_or(rounds.completed());
@@ -244,7 +243,7 @@ impl Protocol {
         Ok(tables.into_iter().map(comparison).collect())
     }
 
-    /// Whether every row that will have figures is as precise as was wished for.
+    /// Returns whether every row that will have figures is as precise as the goal.
     fn is_precise(&self, tables: &[Vec<Measurement>]) -> bool {
         let precise =
             |rows: &Vec<Measurement>, goal| rows.iter().all(|row| row.is_precise(&rows[0], goal));

@@ -1,10 +1,10 @@
-//! How many threads of a strategy really compute.
+//! Counts the threads of a strategy that compute at the same time.
 //!
-//! Watching a rendering does not tell: a thread may be idle by the luck of scheduling alone, and on
-//! a machine with two cores 64 threads hardly ever meet. So the work is a rendezvous: whoever
-//! computes a tile waits until N distinct threads do. A strategy with N threads cannot help
-//! bringing all of them, and one with fewer gives itself away by letting the time run out. Who
-//! comes only then proves nothing: it may be a thread that was started when another had ended.
+//! Observing an ordinary rendering is not enough: a thread may be idle by chance, and on two cores
+//! 64 threads hardly ever run together. So the work is a rendezvous: each tile waits until N
+//! distinct threads compute one. A strategy with N threads brings all of them; with fewer, the
+//! time runs out. A thread that comes after that is not counted, because it may have been started
+//! when another had ended.
 
 use crate::catch_panic::catch_panic;
 use rayweave_contract::{Image, ImageError, Plan, Strategy, Tile, Work};
@@ -15,43 +15,42 @@ use std::thread::{self, ThreadId};
 use std::time::{Duration, Instant};
 use thiserror::Error;
 
-/// How long a rendezvous waits for threads before it gives up; only a strategy with too few waits
-/// it out.
+/// The time that a rendezvous waits for threads. Only a strategy with too few threads takes it.
 pub const TIMEOUT: Duration = Duration::from_secs(10);
 
-/// How long the threads that have met stay together, so that one too many comes to light.
+/// The time that threads wait for a surplus thread after all have met.
 const GRACE: Duration = Duration::from_millis(20);
 
-/// The most pixels that threads meet over, as long as there are two for each: 12 MiB.
+/// The largest number of pixels of a rendezvous, unless two for each thread are more: 12 MiB.
 const MAX_PIXELS: u32 = 1 << 20;
 
-/// Why threads could not be counted.
+/// An error that prevents counting threads.
 #[derive(Debug, Error)]
 pub enum CountError {
     /// The strategy failed.
     #[error("{0}")]
     Strategy(String),
-    /// So many threads that there is no image with a tile for each.
+    /// There are so many threads that no image has a tile for each.
     #[error(transparent)]
     Image(#[from] ImageError),
 }
 
-/// What the threads of a plan meet over: a column of two tiles for each.
+/// The image that the threads of a plan meet over: a column of two tiles for each.
 ///
-/// So each thread gets some, and something is left over for a surplus thread, whether a strategy
-/// deals out pixels, rows or tiles; a strategy that deals out columns would need another image.
+/// Each thread gets some, and a surplus thread too, whether the pieces are pixels, rows or tiles. A
+/// strategy whose pieces are columns would need another image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rendezvous {
-    /// What is prepared for: the plan, but with tiles of which there is an image within bounds.
+    /// The plan, with smaller tiles where the image would be too large.
     pub plan: Plan,
-    /// In pixels: a tile's, or less where that would be too many pixels.
+    /// The width of the image in pixels: a tile's, or less where the image would be too large.
     pub width: u32,
-    /// In pixels.
+    /// The height of the image in pixels.
     pub height: u32,
 }
 
 impl Rendezvous {
-    /// For the threads of `plan`.
+    /// Returns the rendezvous for the threads of `plan`.
     #[must_use]
     pub fn of(plan: Plan) -> Self {
         let tiles = u32::try_from(plan.threads.get()).unwrap_or(u32::MAX).saturating_mul(2);
@@ -62,10 +61,10 @@ impl Rendezvous {
         Self { plan: Plan { tile, ..plan }, width, height }
     }
 
-    /// The number of threads that compute when `strategy` is prepared for the plan.
+    /// Returns the number of threads that compute when `strategy` is prepared for the plan.
     ///
-    /// Too few are reported after `timeout`, exactly; too many as one too many at least, unless the
-    /// surplus thread is not scheduled at all while the others wait for it some 20 ms.
+    /// Too few are counted exactly, after `timeout`. Of too many at least one is counted, unless
+    /// the operating system does not schedule it for the 20 ms that the others wait for it.
     ///
     /// # Errors
     ///
@@ -83,7 +82,7 @@ impl Rendezvous {
     }
 }
 
-/// A work that returns from its first tiles only when enough distinct threads compute one.
+/// A work that returns from its first tiles only when enough distinct threads compute one each.
 #[derive(Debug)]
 struct Meeting {
     threads: usize,
@@ -100,15 +99,15 @@ struct State {
 
 #[derive(Clone, Copy, Debug)]
 enum Phase {
-    /// Nobody has come yet.
+    /// No thread has come yet.
     Empty,
-    /// Threads wait for more of them, until then at most.
+    /// Threads wait for the others, until this time.
     Gathering(Instant),
-    /// All have met, and wait until then for one too many.
+    /// All threads have met, and wait for a surplus one until this time.
     Complete(Instant),
-    /// Nobody waits any more, for all have met; whoever still comes is one too many.
+    /// All threads have met and wait no more; any other thread is a surplus one.
     Open,
-    /// Nobody waits any more, for too few have come in time; whoever still comes does not count.
+    /// Too few threads came in time, and those that did wait no more; others are not counted.
     GivenUp,
 }
 
@@ -158,7 +157,7 @@ impl Work for Meeting {
 mod tests {
     use super::*;
 
-    /// What is counted when `present` threads compute and `asked` are waited for.
+    /// Returns the count when `present` threads compute and `asked` are waited for.
     fn count(present: usize, asked: usize, timeout: Duration) -> usize {
         let meeting = meeting_of(asked, timeout);
         thread::scope(|scope| {
@@ -188,9 +187,9 @@ mod tests {
         }
     }
 
-    /// Threads one after the other are one at a time, however many.
+    /// Catches threads that run one after the other counted as several.
     #[test]
-    fn who_comes_late_does_not_count_unless_all_were_there() {
+    fn a_late_thread_counts_only_if_all_had_met() {
         let one_after_another = |threads: usize, asked| {
             let meeting = meeting_of(asked, Duration::from_millis(20));
             for _ in 0..threads {

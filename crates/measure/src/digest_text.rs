@@ -1,4 +1,4 @@
-//! Digests in JSON: as the 64 hexadecimal digits that they are displayed as.
+//! Digests in JSON as the 64 hexadecimal digits of their `Display`.
 
 use rayweave_contract::Digest;
 use serde::de::Error;
@@ -12,7 +12,7 @@ pub(crate) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Digest, 
     String::deserialize(from)?.parse().map_err(D::Error::custom)
 }
 
-/// The same for a digest that there may not be: null.
+/// The same for an optional digest, with null for none.
 pub(crate) mod optional {
     use super::{Deserialize, Deserializer, Digest, Error, Serializer};
 

@@ -33,7 +33,7 @@ impl Renderer for Skip {
     }
 }
 
-/// A strategy of one thread that does as it is told.
+/// A strategy whose name, threads and renderers are those that the test gives.
 pub(crate) struct FakeStrategy {
     name: &'static str,
     threads: Threads,
@@ -73,7 +73,7 @@ impl Strategy for FakeStrategy {
     }
 
     fn summary(&self) -> &'static str {
-        "does as it is told"
+        "a fake"
     }
 
     fn threads(&self) -> Threads {

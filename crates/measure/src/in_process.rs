@@ -1,4 +1,4 @@
-//! Renders in this process and times it.
+//! An executor that renders in this process and takes the times.
 
 use crate::catch_panic::catch_panic;
 use crate::compare::{Entry, Executor};
@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 pub struct InProcessExecutor<'a> {
     work: &'a dyn Work,
     tile: NonZeroU32,
-    /// One for all renderings: none of them pays for touching fresh memory.
+    /// The image of all renderings, so that only the first pays for fresh memory.
     image: Image,
     begin: Instant,
     /// The number of primary rays of a tile.
@@ -146,10 +146,10 @@ mod tests {
         })
     }
 
-    /// Catches a count by the plan's tiles instead of those that were cut, one in the timed
+    /// Catches a count by the plan's tiles instead of the rendered ones, a count in timed
     /// renderings, and a need other than the whole image's.
     #[test]
-    fn the_warm_up_counts_the_tiles_that_were_cut() {
+    fn the_warm_up_counts_the_rendered_tiles() {
         let asked = AtomicUsize::new(0);
         let rays = |rect: Rect| {
             asked.fetch_add(1, Ordering::Relaxed);
@@ -174,8 +174,7 @@ mod tests {
         assert_eq!(executor.warm_up(&entry).map(|sample| sample.primary_rays), Ok(None));
     }
 
-    /// Catches a first image that passes for the second, and spans that are taken at the wrong
-    /// places.
+    /// Catches a first image that passes for the second, and times of the wrong spans.
     #[test]
     fn a_cold_rendering_is_prepared_and_rendered_and_then_rendered_again() {
         let entry = Entry { strategy: &COMPLETE, threads: NonZeroUsize::MIN };

@@ -1,4 +1,5 @@
-//! What cores cost each other: threads that share nothing, each of which draws the whole image.
+//! Measures how much cores slow each other down: threads that share nothing render the whole image
+//! each.
 
 use crate::in_process::nanoseconds;
 use crate::statistics::{Interval, ratio_interval};
@@ -14,35 +15,35 @@ use std::time::{Duration, Instant};
 
 const NAME: &str = "independent";
 
-/// No way to share work: with N threads the image is drawn N times. How much longer that takes
-/// than once is what the machine's cores cost each other.
+/// A strategy that does not share work: N threads render the image N times. Its time over that of
+/// one rendering is the slowdown by other cores.
 #[derive(Debug, Default)]
 pub struct Independent {
     shared: Arc<Mutex<Shared>>,
 }
 
-/// What one rendering leaves to the next.
+/// The state that one rendering leaves to the next.
 #[derive(Debug, Default)]
 struct Shared {
-    /// Of each thread but the first: no rendering but the first pays for fresh memory.
+    /// The images of all threads but the first. They are kept, so that only the first rendering
+    /// pays for fresh memory.
     copies: Vec<Image>,
-    /// Of each rendering, by the number of threads, how many nanoseconds a thread drew, in the
-    /// mean.
+    /// The mean nanoseconds of a thread in each rendering, by the number of threads.
     thread_ns: BTreeMap<usize, Vec<u64>>,
 }
 
 impl Independent {
-    /// How many times as long as alone a thread drew with `threads` of them, round by round: in the
-    /// latest renderings, as many as there are times alone, `alone_ns` in nanoseconds. `None`
-    /// without any.
+    /// Returns the time of a thread beside others, `threads` in all, over the times alone,
+    /// `alone_ns` in nanoseconds, round by round. The latest renderings are used, as many as there
+    /// are times alone. `None` if there are none.
     ///
-    /// Of each rendering the mean of its threads counts, not the last: where work is shared,
-    /// whoever is not disturbed does more of it.
+    /// The time of a rendering is the mean of its threads, not that of the last: where work is
+    /// shared, undisturbed threads do more of it.
     #[must_use]
     pub fn slowdown(&self, threads: usize, alone_ns: &[u64]) -> Option<Interval> {
         let shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
         let times = shared.thread_ns.get(&threads)?;
-        // Before them there are those of the warm-up.
+        // The first ones are those of the warm-up.
         ratio_interval(&times[times.len().saturating_sub(alone_ns.len())..], alone_ns)
     }
 }
@@ -53,7 +54,7 @@ impl Strategy for Independent {
     }
 
     fn summary(&self) -> &'static str {
-        "each thread draws the whole image: what cores cost each other"
+        "each thread renders the whole image: how much cores slow each other down"
     }
 
     fn threads(&self) -> Threads {
@@ -117,7 +118,7 @@ impl Renderer for Copying {
     }
 }
 
-/// 0 of no times.
+/// Returns the mean of `times` in nanoseconds; 0 if there are none.
 fn mean_ns(times: &[Duration]) -> u64 {
     nanoseconds(times.iter().sum()) / times.len().max(1) as u64
 }
@@ -129,10 +130,9 @@ mod tests {
     use crate::synthetic::even;
     use std::num::{NonZeroU32, NonZeroUsize};
 
-    /// Catches threads that share the work, and an image of another size that is drawn into an old
-    /// copy.
+    /// Catches threads that share the work, and an image of another size rendered into an old copy.
     #[test]
-    fn each_thread_draws_all_of_it() {
+    fn each_thread_renders_the_whole_image() {
         let (threads, tile) =
             (NonZeroUsize::new(3).expect("not 0"), NonZeroU32::new(2).expect("not 0"));
         let mut renderer =
@@ -149,13 +149,13 @@ mod tests {
         }
     }
 
-    /// Catches the sum of the threads' times, and that of the last.
+    /// Catches the sum of the threads' times, and the time of the last.
     #[test]
-    fn a_rendering_counts_by_the_mean_of_its_threads() {
+    fn the_time_of_a_rendering_is_the_mean_of_its_threads() {
         assert_eq!(mean_ns(&[3, 9, 6].map(Duration::from_nanos)), 6);
     }
 
-    /// Catches a warm-up that is taken for a round, and other numbers of threads.
+    /// Catches a warm-up counted as a round, and times of other numbers of threads.
     #[test]
     fn the_latest_renderings_are_those_of_the_rounds() {
         let independent = Independent::default();

@@ -1,4 +1,4 @@
-//! What a result was measured on, and with what.
+//! The machine that a result was measured on, and the program that measured it.
 
 use serde::{Deserialize, Serialize};
 use std::env::consts::{ARCH, OS};
@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::thread;
 
-/// Where Linux shows its control groups.
+/// The folder of control groups on Linux.
 const GROUPS: &str = "/sys/fs/cgroup";
 
 /// Facts about this machine and this program.
@@ -35,7 +35,7 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// Looks at this machine; what cannot be found out is unknown.
+    /// Returns the facts about this machine; those that cannot be found out are unknown.
     #[must_use]
     pub fn here() -> Self {
         let cpuinfo = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
@@ -59,7 +59,7 @@ impl Machine {
     }
 }
 
-/// The value of the first "model name : value" line of `/proc/cpuinfo`.
+/// Returns the value of the first "model name : value" line of `/proc/cpuinfo`.
 fn cpu_model(cpuinfo: &str) -> Option<&str> {
     let model = cpuinfo.lines().find(|line| line.starts_with("model name"))?;
     model.split_once(':').map(|(_, value)| value.trim())
@@ -70,7 +70,7 @@ fn logical_cores(cpuinfo: &str) -> Option<usize> {
     (count > 0).then_some(count)
 }
 
-/// The tightest limit of the control groups that this process is in, in cores.
+/// Returns the tightest limit of the control groups that this process is in, in cores.
 fn quota() -> Option<f64> {
     cpu_groups()
         .iter()
@@ -78,7 +78,7 @@ fn quota() -> Option<f64> {
         .min_by(f64::total_cmp)
 }
 
-/// The folders of the control groups that bind this process: its own, and those around it.
+/// Returns the folders of the control groups that limit this process: its own and their parents.
 pub(crate) fn cpu_groups() -> Vec<(Version, PathBuf)> {
     let groups = fs::read_to_string("/proc/self/cgroup").unwrap_or_default();
     let inside = |folder: &&Path| folder.starts_with(GROUPS);
@@ -97,7 +97,8 @@ pub(crate) enum Version {
     V2,
 }
 
-/// The CPU's group in a line "number:controllers:/path" of `/proc/self/cgroup`, and its folder.
+/// Returns the version and the folder of the CPU's group in a line "number:controllers:/path" of
+/// `/proc/self/cgroup`.
 fn cpu_group(line: &str) -> Option<(Version, PathBuf)> {
     let mut parts = line.splitn(3, ':').skip(1);
     let (controllers, path) = (parts.next()?, parts.next()?.trim_start_matches('/'));
@@ -120,7 +121,8 @@ fn limit(version: Version, folder: &Path) -> Option<f64> {
     }
 }
 
-/// The cores of "quota period", both in the same unit; none for "max" or -1, which mean no limit.
+/// Returns the cores of "quota period", both in the same unit; `None` for "max" or -1, which mean
+/// no limit.
 fn cores(text: &str) -> Option<f64> {
     let mut numbers = text.split_whitespace().map(str::parse::<f64>);
     let (quota, period) = (numbers.next()?.ok()?, numbers.next()?.ok()?);

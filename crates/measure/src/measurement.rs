@@ -1,5 +1,5 @@
-//! One strategy with one number of threads, measured. Tables, files and pages are views of a list
-//! of these.
+//! The measurement of one strategy with one number of threads. Tables, files and pages are views of
+//! a list of measurements.
 
 use crate::compare::Entry;
 use crate::digest_text;
@@ -50,9 +50,9 @@ impl Sample {
     }
 }
 
-/// A strategy with a number of threads, measured. Each list of samples has one value a round, of
-/// verified renderings only, or is empty where the value is not known. A figure is `None` if the
-/// strategy failed or gave another image, and for all strategies if the reference did.
+/// The measurement of a strategy with a number of threads. Each list of samples has one value a
+/// round, of verified renderings only, or is empty if the value is unknown. A figure is `None` if
+/// the strategy failed or gave another image, and for all strategies if the reference did.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Measurement {
     /// The strategy's name.

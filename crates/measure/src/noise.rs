@@ -1,7 +1,6 @@
-//! What else went on while something was measured: other programs, the hypervisor, limits, the
-//! clock rate.
+//! Observes the machine during a measurement: other programs, the hypervisor, limits, clock rates.
 //!
-//! All of it is what Linux shows under `/proc` and `/sys`; what is not there is unknown.
+//! All figures come from `/proc` and `/sys` of Linux; those that are not there are unknown.
 
 use crate::machine::cpu_groups;
 use crate::usage::Usage;
@@ -10,14 +9,13 @@ use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// The length of a tick in `/proc/stat`, in milliseconds: a hundred a second, whatever the kernel's
-/// own.
+/// The length of a tick in `/proc/stat`, in milliseconds. It does not depend on the kernel's timer.
 const TICK_MS: u64 = 10;
 
 /// The share of the machine that others may use before a measurement counts as disturbed.
 const QUIET: f64 = 0.02;
 
-/// What went on during a measurement. What the system does not tell is `None`.
+/// The other activity on the machine during a measurement; `None` where the system does not tell.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Noise {
     /// The duration of the measurement, in seconds.
@@ -39,14 +37,14 @@ pub struct Noise {
     pub lowest_mhz: Option<f64>,
     /// The highest clock rate of a core at the beginning and at the end, in MHz.
     pub highest_mhz: Option<f64>,
-    /// Whether the times are to be doubted: others had more than 2 % of the machine, or the limit
-    /// was reached.
+    /// Whether the times are unreliable: others had more than 2 % of the machine, or the limit was
+    /// reached.
     pub disturbed: bool,
 }
 
 impl Noise {
-    /// Computes what follows from the counts on a machine of `cores` logical cores: the share of
-    /// others, and whether they disturbed.
+    /// Computes the share of others and `disturbed` from the counts, on a machine of `cores`
+    /// logical cores.
     #[must_use]
     fn judged(self, cores: usize) -> Self {
         let capacity = (self.wall_s * cores.max(1) as f64).max(f64::MIN_POSITIVE);
@@ -58,24 +56,24 @@ impl Noise {
     }
 }
 
-/// Watches the machine from [`NoiseMonitor::start`] to [`NoiseMonitor::finish`].
+/// Observes the machine from [`NoiseMonitor::start`] to [`NoiseMonitor::finish`].
 #[derive(Debug)]
 pub struct NoiseMonitor {
     begin: Instant,
-    before: Look,
+    before: Counters,
 }
 
 impl NoiseMonitor {
-    /// Starts to watch.
+    /// Starts to observe.
     #[must_use]
     pub fn start() -> Self {
-        Self { begin: Instant::now(), before: Look::now() }
+        Self { begin: Instant::now(), before: Counters::now() }
     }
 
-    /// Returns what went on since the start, on a machine of `cores` logical cores.
+    /// Returns the noise since the start, on a machine of `cores` logical cores.
     #[must_use]
     pub fn finish(&self, cores: usize) -> Noise {
-        let (wall, before, after) = (self.begin.elapsed(), &self.before, Look::now());
+        let (wall, before, after) = (self.begin.elapsed(), &self.before, Counters::now());
         let own = after.own.zip(before.own).map(|(after, before)| after.since(before));
         let times = after.times.zip(before.times);
         let busy = times.map(|(after, before)| after.busy.saturating_sub(before.busy));
@@ -97,16 +95,16 @@ impl NoiseMonitor {
     }
 }
 
-/// What there is to see at one moment, all of it since some beginning.
+/// The counters of the system at one moment.
 #[derive(Debug)]
-struct Look {
+struct Counters {
     times: Option<Times>,
     own: Option<Usage>,
     throttled: Option<u64>,
     megahertz: Vec<f64>,
 }
 
-impl Look {
+impl Counters {
     fn now() -> Self {
         let stat = fs::read_to_string("/proc/stat").unwrap_or_default();
         let own = Usage::of_this_process().zip(Usage::of_ended_children());
@@ -119,7 +117,7 @@ impl Look {
     }
 }
 
-/// What all processors together have done.
+/// The time that all processors together were busy, or stolen by the hypervisor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Times {
     busy: Duration,
@@ -127,8 +125,8 @@ struct Times {
 }
 
 impl Times {
-    /// From the line "cpu user nice system idle iowait irq softirq steal ..." of `/proc/stat`, in
-    /// ticks.
+    /// Parses the line "cpu user nice system idle iowait irq softirq steal ..." of `/proc/stat`,
+    /// in ticks.
     fn of(stat: &str) -> Option<Self> {
         let line = stat.lines().find_map(|line| line.strip_prefix("cpu "))?;
         let ticks = line.split_whitespace().map(|number| number.parse().ok());
@@ -140,7 +138,7 @@ impl Times {
     }
 }
 
-/// How often the groups that this process is in have been stopped, all of them together.
+/// Returns the number of times that the control groups of this process have been throttled.
 fn throttled() -> Option<u64> {
     let stats = cpu_groups()
         .into_iter()
@@ -152,7 +150,7 @@ fn times_throttled(stat: &str) -> Option<u64> {
     stat.lines().find_map(|line| line.strip_prefix("nr_throttled "))?.trim().parse().ok()
 }
 
-/// The clock rate of each core now.
+/// Returns the current clock rate of each core, in MHz.
 fn megahertz() -> Vec<f64> {
     let Ok(cores) = fs::read_dir("/sys/devices/system/cpu") else { return Vec::new() };
     cores
@@ -200,7 +198,7 @@ mod tests {
         assert!(!unknown.disturbed && unknown.share_of_others.is_none());
     }
 
-    /// Catches our own work taken for somebody else's.
+    /// Catches CPU time of this process counted as that of other programs.
     #[cfg(target_os = "linux")]
     #[test]
     fn our_own_time_is_not_foreign() {
@@ -209,11 +207,12 @@ mod tests {
                 .expect("its first line")
                 .busy
         };
-        let (busy_before, watch) = (stat(), NoiseMonitor::start());
+        let (busy_before, monitor) = (stat(), NoiseMonitor::start());
         let before = Usage::of_this_process().expect("Linux").cpu;
         while Usage::of_this_process().expect("Linux").cpu < before + Duration::from_millis(100) {}
-        let (foreign, busy) = (watch.finish(1).foreign_cpu_s.expect("Linux"), stat() - busy_before);
-        // All that was done, less what we did; ticks are coarse.
+        let (foreign, busy) =
+            (monitor.finish(1).foreign_cpu_s.expect("Linux"), stat() - busy_before);
+        // All busy time less that of this process; ticks are coarse.
         let coarseness = Duration::from_millis(4 * TICK_MS);
         assert!(
             Duration::from_secs_f64(foreign) + Duration::from_millis(100) <= busy + coarseness,

@@ -1,8 +1,7 @@
-//! What a strategy costs beside its work, on synthetic work: a piece's dispatch, the smallest task
-//! that is worth it, the smallest image, and the first use.
+//! Measures the cost of a strategy beside its work, on synthetic work: dispatch of a piece, the
+//! smallest efficient task, the smallest image that is faster, and the first use.
 //!
-//! All strategies are measured in interleaved rounds, as [`rounds`](crate::rounds) has it, and
-//! every image is verified.
+//! All strategies are measured in interleaved [rounds](crate::rounds), and every image is verified.
 
 mod curve;
 
@@ -17,7 +16,7 @@ use std::num::{NonZeroU32, NonZeroUsize};
 use std::time::Instant;
 use thiserror::Error;
 
-/// Pixels of the column that tasks are made of: one each, but for a strategy that deals in bands.
+/// The pixels of the column of tasks. A task is one pixel, or a band for a strategy of bands.
 pub const TASKS: u32 = 1024;
 
 /// The cost of a pixel in the images of the break-even, in nanoseconds.
@@ -29,96 +28,97 @@ pub const LARGEST_SIDE: u32 = 512;
 /// The side of a tile in these images.
 pub const TILE: NonZeroU32 = NonZeroU32::new(32).expect("32 is not 0");
 
-/// The least efficiency of the smallest task, as a share of the largest efficiency.
+/// The efficiency that defines the smallest task, as a share of the largest efficiency.
 const LEAST_EFFICIENCY: f64 = 0.5;
 
-/// A task has from one step to as many as 2 to this power.
+/// The logarithm to base 2 of the steps of the largest task; the smallest has one step.
 const LARGEST_TASK: u32 = 14;
 
-/// The side of the image of the first use, in pixels.
+/// The side of the image for the first use, in pixels.
 const FIRST_SIDE: u32 = 64;
 
-/// What is measured.
+/// A measurement of overheads.
 #[derive(Clone, Copy)]
 pub struct Overhead<'a> {
-    /// What break-even is against, and steps are timed with.
+    /// The strategy that break-even is relative to, and that steps are timed with.
     pub reference: &'a dyn Strategy,
-    /// The reference may be among them.
+    /// The strategies to measure; the reference may be among them.
     pub strategies: &'a [&'a dyn Strategy],
     /// The number of computing threads.
     pub threads: NonZeroUsize,
-    /// How long.
+    /// The number of rounds and the time for them.
     pub protocol: Protocol,
 }
 
-/// Rows in the order of the strategies.
+/// The overheads of some strategies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OverheadStudy {
-    /// One a strategy.
+    /// The rows, one for each strategy, in their order.
     pub rows: Vec<OverheadRow>,
-    /// Of the synthetic work, in nanoseconds.
+    /// The time of a step of the synthetic work, in nanoseconds.
     pub step_ns: f64,
-    /// Rounds measured.
+    /// The number of rounds measured.
     pub rounds: usize,
 }
 
-/// A strategy, measured.
+/// The overheads of one strategy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OverheadRow {
-    /// Its name.
+    /// The strategy's name.
     pub strategy: &'static str,
-    /// What it computes at once.
+    /// The granularity of its pieces.
     pub granularity: Granularity,
     /// The number of computing threads.
     pub threads: usize,
-    /// Or why there are none.
+    /// The figures, or the reason why there are none.
     pub figures: Result<OverheadFigures, Failure>,
 }
 
-/// What a strategy costs; times in nanoseconds.
+/// The cost of a strategy beside its work; times in nanoseconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OverheadFigures {
-    /// For each piece, on one thread; `None` for bands, of which there are as many as threads.
+    /// The dispatch of a piece on one thread; `None` for bands, of which there are as many as
+    /// threads.
     pub dispatch_one: Option<Interval>,
-    /// For each piece, on all threads, as the clock on the wall has it.
+    /// The dispatch of a piece on all threads, in wall time.
     pub dispatch_all: Option<Interval>,
-    /// The smallest task of which half of the largest efficiency is left, after Slaughter et al.,
-    /// "Task Bench", 2020: how long its work takes. `None` if the smallest that was tried, of one
-    /// step, is not too small.
+    /// The minimum effective task granularity: the time of the smallest task that leaves half of
+    /// the largest efficiency. `None` if the smallest task that was tried, of one step, does.
+    /// Source: Slaughter et al., "Task Bench", 2020.
     pub metg: Option<f64>,
-    /// The side of the smallest square image from which on it is faster than the reference, in
-    /// pixels; `None` if it never is, up to [`LARGEST_SIDE`].
+    /// The side in pixels of the smallest square image from which on the strategy is faster than
+    /// the reference; `None` if it never is, up to [`LARGEST_SIDE`].
     pub break_even: Option<f64>,
-    /// To prepare it.
+    /// The time to prepare the strategy.
     pub prepare: Interval,
-    /// The first rendering after that, of a small image.
+    /// The time of the first rendering of a small image after that.
     pub first: Interval,
-    /// The same again.
+    /// The time of a later rendering of the same image.
     pub later: Interval,
 }
 
-/// Why a strategy has no figures.
+/// The reason why a strategy has no figures.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum Failure {
-    /// It could not be prepared: it is not available here, or could not start its threads.
+    /// The strategy is not available here, or could not start its threads.
     #[error("{0}")]
     Preparing(String),
-    /// It failed, or drew a wrong image.
+    /// The strategy failed, or gave a wrong image.
     #[error("{0}")]
     Rendering(String),
 }
 
-/// Why nothing could be measured.
+/// An error that leaves nothing to measure.
 #[derive(Debug, Error)]
 pub enum OverheadError {
-    /// There is nothing to time steps with.
+    /// The reference failed, which steps are timed with.
     #[error("the reference failed: {0}")]
     Reference(String),
 }
 
 impl OverheadStudy {
-    /// Whether every image of synthetic work was right. A strategy that is not available draws
-    /// none.
+    /// Returns whether every image of synthetic work was right. A strategy that is not available
+    /// renders none.
     #[must_use]
     pub fn passed(&self) -> bool {
         self.rows.iter().all(|row| !matches!(row.figures, Err(Failure::Rendering(_))))
@@ -126,11 +126,11 @@ impl OverheadStudy {
 }
 
 impl Overhead<'_> {
-    /// Measures all strategies; `progress` is told the share that is done, between timed spans.
+    /// Measures all strategies. `progress` gets the share that is done, between timed spans.
     ///
     /// # Errors
     ///
-    /// The reference fails. Of any other strategy the row says why.
+    /// The reference fails. If another strategy fails, its row has the reason.
     pub fn run(&self, mut progress: impl FnMut(&str, f64)) -> Result<OverheadStudy, OverheadError> {
         let begin = Instant::now();
         let mut workloads = Workloads::new(self.reference).map_err(OverheadError::Reference)?;
@@ -142,7 +142,7 @@ impl Overhead<'_> {
         while let Some(slot) = rounds.next(begin.elapsed()) {
             let strategy = strategies[slot.entry];
             progress(strategy.name(), slot.fraction);
-            // Without the reference there is nothing to say of the others.
+            // Without the reference there are no figures.
             if samples[0].is_err() {
                 break;
             }
@@ -150,7 +150,7 @@ impl Overhead<'_> {
             let measured =
                 if so_far.is_ok() { self.measure(strategy, &mut workloads) } else { continue };
             match (so_far.as_mut(), measured) {
-                // The warm-up is no sample.
+                // The warm-up is not a sample.
                 (Ok(samples), Ok(round)) if slot.round.is_some() => samples.rounds.push(round),
                 (_, Err(error)) => *so_far = Err(error),
                 _ => {}
@@ -178,7 +178,7 @@ impl Overhead<'_> {
         strategy.threads().computing_threads(self.threads)
     }
 
-    /// Everything once, for one strategy.
+    /// Measures everything once for one strategy.
     fn measure(
         &self,
         strategy: &dyn Strategy,
@@ -198,7 +198,7 @@ impl Overhead<'_> {
         let dispatch_all =
             DispatchProbe::slope(workloads.probe.time(&mut *renderer).map_err(failed)?);
         let tasks = times(&mut workloads.tasks, &mut *renderer)?;
-        // Their threads would be there already: OpenMP keeps one pool for each calling thread.
+        // Otherwise the threads would exist already: OpenMP keeps one pool for each calling thread.
         drop((one, renderer));
         let begin = Instant::now();
         let mut renderer = catch_panic(|| strategy.prepare(Plan { threads, tile: TILE }))
@@ -254,14 +254,14 @@ impl Overhead<'_> {
     }
 }
 
-/// One round of one strategy, in nanoseconds.
+/// The times of one strategy in one round, in nanoseconds.
 #[derive(Clone, Debug)]
 struct Round {
     dispatch_one: f64,
     dispatch_all: f64,
-    /// Of the column, by the power of two of its steps.
+    /// The column's times, by the power of two of its steps.
     tasks: Vec<f64>,
-    /// Of the squares, by [`sides`].
+    /// The squares' times, by [`sides`].
     squares: Vec<f64>,
     prepare: f64,
     first: f64,
@@ -283,20 +283,20 @@ impl Samples {
     }
 }
 
-/// Of the squares, in pixels.
+/// Returns the sides of the squares, in pixels.
 fn sides() -> impl Iterator<Item = u32> {
     (0..).map(|power| 1 << power).take_while(|side| *side <= LARGEST_SIDE)
 }
 
-/// Everything that is rendered, made once for all rounds.
+/// The images to render, made once for all rounds.
 struct Workloads {
     step_ns: f64,
     probe: DispatchProbe,
-    /// By the power of two of their steps.
+    /// The columns of tasks, by the power of two of their steps.
     tasks: Vec<TimedImage>,
-    /// By [`sides`].
+    /// The squares, by [`sides`].
     squares: Vec<TimedImage>,
-    /// Of next to no work.
+    /// The image of the first use, with next to no work.
     first: TimedImage,
 }
 
@@ -318,7 +318,7 @@ impl Workloads {
     }
 }
 
-/// Prepared with tiles of one pixel.
+/// Prepares `strategy` with tiles of one pixel.
 pub(crate) fn of_pixels(
     strategy: &dyn Strategy,
     threads: NonZeroUsize,
@@ -326,13 +326,13 @@ pub(crate) fn of_pixels(
     catch_panic(|| strategy.prepare(Plan { threads, tile: NonZeroU32::MIN }))
 }
 
-/// Nanoseconds a step of synthetic work, on one thread of `reference`.
+/// Returns the nanoseconds of a step of synthetic work on one thread of `reference`.
 pub(crate) fn step(reference: &dyn Strategy) -> Result<f64, String> {
     const STEPS: u32 = 1 << 10;
     let mut renderer = of_pixels(reference, NonZeroUsize::MIN)?;
     let (mut none, mut many) = (TimedImage::column(TASKS, 0)?, TimedImage::column(TASKS, STEPS)?);
     let times = (0..9).map(|_| Ok(many.time(&mut *renderer)? - none.time(&mut *renderer)?));
     let time = median(&times.collect::<Result<Vec<_>, String>>()?).unwrap_or(0.0);
-    // A clock too coarse must not make a step of no time.
+    // A coarse clock must not give a step of no time.
     Ok(time.max(1.0) / f64::from(TASKS) / f64::from(STEPS))
 }

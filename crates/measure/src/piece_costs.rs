@@ -1,4 +1,4 @@
-//! What each piece of an image costs, computed alone on one thread.
+//! Measures the cost of each piece of an image, on one thread.
 
 use crate::statistics::lower_quartile;
 use rayweave_contract::{
@@ -9,11 +9,11 @@ use std::num::NonZeroU32;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
-/// Pixels that share a reading of the clock, which takes as long as a cheap pixel, and what it
-/// reads.
+/// The number of pixels that are timed together, because a clock reading takes as long as a cheap
+/// pixel.
 const RUN: usize = 16;
 
-/// What an image is cut into.
+/// The pieces that an image is cut into.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cut {
     /// One pixel at a time.
@@ -22,12 +22,12 @@ pub enum Cut {
     Rows,
     /// Tiles of [`Plan::tile`].
     Tiles,
-    /// Not at all.
+    /// The whole image at once.
     Whole,
 }
 
 impl Cut {
-    /// Those that the costs of `pieces` are found from.
+    /// Returns the cuts that are needed for the costs of pieces of these granularities.
     #[must_use]
     pub fn for_pieces(granularities: &[Granularity]) -> Vec<Self> {
         let is_needed = |cut: &Self| {
@@ -41,7 +41,7 @@ impl Cut {
         [Self::Pixels, Self::Rows, Self::Tiles, Self::Whole].into_iter().filter(is_needed).collect()
     }
 
-    /// Pieces that are timed together.
+    /// Returns the number of pieces that are timed together.
     fn run(self) -> usize {
         if self == Self::Pixels { RUN } else { 1 }
     }
@@ -56,34 +56,34 @@ impl Cut {
     }
 }
 
-/// No way to spread work: the caller's thread draws one piece after the other, and takes note of
-/// what each costs. As an entry of a comparison it is timed in the same rounds as all others.
+/// A strategy that does not share work: the caller's thread renders and times one piece after the
+/// other. As an entry of a comparison it is measured in the same rounds as the others.
 #[derive(Debug)]
 pub struct OneByOne {
     cut: Cut,
     log: Arc<Mutex<Log>>,
 }
 
-/// What was measured.
+/// The times of all renderings so far.
 #[derive(Debug, Default)]
 struct Log {
-    /// Of a rendering.
+    /// The number of pieces of a rendering.
     pieces: usize,
-    /// Of each rendering the nanoseconds of every [run](Cut::run) of pieces, the last of which may
-    /// be shorter.
+    /// The nanoseconds of every [run](Cut::run) of pieces, by rendering. The last run may be
+    /// shorter.
     passes: Vec<Vec<f64>>,
 }
 
 impl OneByOne {
-    /// Nothing is drawn yet.
+    /// Returns a strategy for this cut, without a measurement yet.
     #[must_use]
     pub fn new(cut: Cut) -> Self {
         Self { cut, log: Arc::default() }
     }
 
-    /// Nanoseconds of every piece: among themselves as in the lower quartile of all renderings, the
-    /// warm-up's too, and together `total`. A short piece finds a moment without disturbance sooner
-    /// than a long one, and would seem cheaper beside other kinds than it is.
+    /// Returns the nanoseconds of every piece, which sum to `total`. They are in proportion to the
+    /// lower quartile of each over all renderings, the warm-up included, because interference only
+    /// adds time. The sum is given because long pieces are disturbed more often than short ones.
     #[must_use]
     pub fn costs(&self, total: f64) -> Vec<f64> {
         let log = self.log.lock().unwrap_or_else(PoisonError::into_inner);
@@ -97,7 +97,7 @@ impl Strategy for OneByOne {
     }
 
     fn summary(&self) -> &'static str {
-        "one thread draws and times each piece"
+        "one thread renders and times each piece"
     }
 
     fn threads(&self) -> Threads {
@@ -140,7 +140,7 @@ impl Renderer for Timing {
                 .map(|(y, row)| timed(&mut Tile::row(0, y, row)))
                 .collect(),
             Cut::Tiles => image.tiles(self.tile).iter_mut().map(timed).collect(),
-            // Tiles larger than the image: one.
+            // With tiles larger than the image there is one.
             Cut::Whole => image.tiles(NonZeroU32::MAX).iter_mut().map(timed).collect(),
         };
         let costs = costs?;
@@ -151,7 +151,7 @@ impl Renderer for Timing {
     }
 }
 
-/// Draws the pixels, and takes the times of [`RUN`] of them together.
+/// Renders the pixels, and times [`RUN`] of them together.
 fn pixels(work: &dyn Work, image: &mut Image) -> Result<Vec<f64>, StrategyError> {
     let width = image.width() as usize;
     let mut costs = Vec::with_capacity(image.pixels().len().div_ceil(RUN));
@@ -166,7 +166,7 @@ fn pixels(work: &dyn Work, image: &mut Image) -> Result<Vec<f64>, StrategyError>
     Ok(costs)
 }
 
-/// See [`OneByOne::costs`]; here of runs.
+/// Returns the costs of runs as [`OneByOne::costs`] does those of pieces.
 fn scaled(passes: &[Vec<f64>], total: f64) -> Vec<f64> {
     let runs = passes.first().map_or(0, Vec::len);
     let quartile =
@@ -177,8 +177,8 @@ fn scaled(passes: &[Vec<f64>], total: f64) -> Vec<f64> {
     quartiles.into_iter().map(|cost| cost * factor).collect()
 }
 
-/// Each of `pieces` pieces has an even share of its run's cost; a run has `length` of them, or what
-/// is left.
+/// Returns the costs of `pieces` pieces: each has an even share of its run. Runs have `length`
+/// pieces; the last has the rest.
 fn spread(runs: &[f64], length: usize, pieces: usize) -> Vec<f64> {
     let mut costs = Vec::with_capacity(pieces);
     for run in runs {
@@ -188,19 +188,20 @@ fn spread(runs: &[f64], length: usize, pieces: usize) -> Vec<f64> {
     costs
 }
 
-/// Nanoseconds of every piece, by the kind of piece, in the order of their numbers; of kinds not
-/// measured none.
+/// The nanoseconds of every piece, by kind of piece, in the order of their numbers. Kinds that were
+/// not measured are empty.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PieceCosts {
     pixels: Vec<f64>,
     rows: Vec<f64>,
     tiles: Vec<f64>,
-    /// The whole image at once.
+    /// The cost of the whole image at once.
     whole: f64,
 }
 
 impl PieceCosts {
-    /// From `measured`, each with its speed-up over a reference that takes `reference_ns`.
+    /// Returns the costs `measured`, each with its speed-up over a reference that takes
+    /// `reference_ns`.
     #[must_use]
     pub fn new(measured: &[(&OneByOne, f64)], reference_ns: f64) -> Self {
         let mut costs = Self::default();
@@ -216,7 +217,7 @@ impl PieceCosts {
         costs
     }
 
-    /// Whether what a strategy needs that deals in such pieces was measured.
+    /// Returns whether the pieces of this granularity were measured.
     #[must_use]
     pub fn know(&self, granularity: Granularity) -> bool {
         match granularity {
@@ -227,11 +228,11 @@ impl PieceCosts {
         }
     }
 
-    /// What each piece costs where `threads` threads compute, in nanoseconds.
+    /// Returns the cost of each piece for `threads` threads, in nanoseconds.
     ///
-    /// A band's cost is put together: as its rows at once are cheaper than one by one, each row
-    /// costs a share of itself, and the band's first row the rest too; the share is the one that is
-    /// right for the whole image.
+    /// A band's cost is composed of its rows' costs. Rows at once are cheaper than one by one, so
+    /// the first row of a band counts in full, and each other row by a share. The share is the one
+    /// that gives the cost of the whole image.
     #[must_use]
     pub fn of(&self, granularity: Granularity, threads: usize) -> Vec<f64> {
         match granularity {
@@ -264,7 +265,8 @@ mod tests {
     use crate::synthetic::even;
     use std::num::NonZeroUsize;
 
-    /// `cut` of an image of 7 x 5 pixels, in tiles of 4, after two renderings.
+    /// Returns the strategy of `cut` after two renderings of an image of 7 x 5 pixels, in tiles of
+    /// 4.
     fn drawn(cut: Cut) -> OneByOne {
         let one_by_one = OneByOne::new(cut);
         let plan = Plan { threads: NonZeroUsize::MIN, tile: NonZeroU32::new(4).expect("not 0") };
@@ -276,7 +278,7 @@ mod tests {
         one_by_one
     }
 
-    /// Catches images that are cut wrongly, and pixels that are remembered one by one.
+    /// Catches images that are cut wrongly, and pixels that are stored one by one.
     #[test]
     fn every_piece_has_a_cost() {
         let cuts = [Cut::Pixels, Cut::Rows, Cut::Tiles, Cut::Whole].map(drawn);
@@ -299,7 +301,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_is_asked_for_is_cut() {
+    fn only_the_needed_cuts_are_measured() {
         assert_eq!(Cut::for_pieces(&[Granularity::Tile, Granularity::Tile]), [Cut::Tiles]);
         assert_eq!(
             Cut::for_pieces(&[Granularity::Band, Granularity::Pixel]),
@@ -308,9 +310,9 @@ mod tests {
         assert_eq!(Cut::for_pieces(&[Granularity::Row]), [Cut::Rows]);
     }
 
-    /// Catches bands that are put together from their rows alone.
+    /// Catches bands that are composed of their rows alone.
     #[test]
-    fn what_was_not_measured_is_not_known() {
+    fn pieces_that_were_not_measured_are_unknown() {
         let rows = PieceCosts { rows: vec![10.0; 4], ..PieceCosts::default() };
         assert_eq!(
             [Granularity::Pixel, Granularity::Row, Granularity::Tile, Granularity::Band]
@@ -320,7 +322,7 @@ mod tests {
         assert!(PieceCosts { whole: 28.0, ..rows }.know(Granularity::Band));
     }
 
-    /// Rows of 10 each alone, but 28 for all four together: what follows a row costs 6.
+    /// Rows cost 10 each alone, but 28 all four together: a row after another costs 6.
     #[test]
     fn bands_are_cheaper_than_their_rows() {
         let costs = PieceCosts { rows: vec![10.0; 4], whole: 28.0, ..PieceCosts::default() };
@@ -330,12 +332,12 @@ mod tests {
         // More threads than rows: some have nothing.
         assert_eq!(costs.of(Granularity::Band, 6), [0.0, 10.0, 10.0, 0.0, 10.0, 10.0]);
         let slower = PieceCosts { whole: 99.0, ..costs };
-        assert_eq!(slower.of(Granularity::Band, 1), [40.0], "no row is dearer in company");
+        assert_eq!(slower.of(Granularity::Band, 1), [40.0], "no row costs more after another");
     }
 
-    /// The least are 3 and 4.
+    /// The lower quartiles are 3 and 4.
     #[test]
-    fn pieces_are_told_apart_undisturbed_and_are_the_total_together() {
+    fn costs_are_in_proportion_to_the_quartiles_and_sum_to_the_total() {
         let passes = [vec![3.0, 11.0], vec![5.0, 4.0], vec![9.0, 6.0]];
         assert_eq!(scaled(&passes, 14.0), [6.0, 8.0]);
         assert!(scaled(&[], 14.0).is_empty());

@@ -1,19 +1,19 @@
-//! A small generator of random numbers: the same seed gives the same numbers on every machine.
+//! A small random number generator that gives the same numbers on every machine.
 
-/// `SplitMix64` of Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014.
+/// The generator of Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014.
 #[derive(Clone, Debug)]
 pub struct SplitMix64 {
     state: u64,
 }
 
 impl SplitMix64 {
-    /// A generator whose numbers follow from `seed` alone.
+    /// Returns a generator whose numbers follow from `seed` alone.
     #[must_use]
     pub fn new(seed: u64) -> Self {
         Self { state: seed }
     }
 
-    /// The next 64 random bits.
+    /// Returns the next 64 random bits.
     pub fn next_u64(&mut self) -> u64 {
         self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut bits = self.state;
@@ -22,18 +22,18 @@ impl SplitMix64 {
         bits ^ (bits >> 31)
     }
 
-    /// A number in `0.0..1.0`, evenly, a multiple of 2^-53.
+    /// Returns a number uniform in `0.0..1.0`, a multiple of 2^-53.
     pub fn fraction(&mut self) -> f64 {
         (self.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// A number in `0..bound`; 0 for a bound of 0. Its bias, under `bound` / 2^64, is far below
-    /// notice.
+    /// Returns a number in `0..bound`, or 0 for a bound of 0. Its bias is negligible, below
+    /// `bound` / 2^64.
     pub fn below(&mut self, bound: usize) -> usize {
         ((u128::from(self.next_u64()) * bound as u128) >> 64) as usize
     }
 
-    /// Puts `items` in a random order, each order as likely as any other (Fisher and Yates).
+    /// Shuffles `items`; every order is equally likely (Fisher and Yates).
     pub fn shuffle<T>(&mut self, items: &mut [T]) {
         for last in (1..items.len()).rev() {
             items.swap(last, self.below(last + 1));

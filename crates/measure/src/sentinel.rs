@@ -1,4 +1,4 @@
-//! The value that fills an image before it is rendered: it shows which pixels nobody wrote.
+//! The sentinel that fills an image before it is rendered, to find pixels that are not written.
 
 use rayweave_contract::{Image, Rgb};
 

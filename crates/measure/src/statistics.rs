@@ -1,51 +1,51 @@
-//! What a sample of times says: median, its uncertainty, and what threads made of it.
+//! Medians, their confidence intervals, and measures of speed-up.
 //!
-//! Intervals are by the bootstrap, as METHODOLOGY.md justifies: resamples of the sample, drawn with
-//! a fixed seed, and between which of their medians all but a few lie.
+//! Intervals come from the bootstrap, as METHODOLOGY.md justifies: percentiles of the medians of
+//! resamples, which are drawn with a fixed seed.
 
 use crate::random::SplitMix64;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::SQRT_2;
 
-/// Resamples: at 8 values the ends of an interval are 11 of them in.
+/// The number of resamples. With 8 values 11 of them lie outside at each end of an interval.
 const RESAMPLES: usize = 2000;
 
-/// Of the resamples: the same sample has the same interval, always.
+/// The seed of the resamples: the same sample always has the same interval.
 const SEED: u64 = 1;
 
 /// A median and the ends of its 95 % confidence interval, all in the unit of the sample.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Interval {
-    /// Of the sample itself.
+    /// The median of the sample.
     pub median: f64,
-    /// Lower end.
+    /// The lower end.
     pub low: f64,
-    /// Upper end.
+    /// The upper end.
     pub high: f64,
 }
 
 impl Interval {
-    /// Whether `value` is in it, the ends included.
+    /// Returns whether the interval contains `value`; its ends belong to it.
     #[must_use]
     pub fn contains(&self, value: f64) -> bool {
         (self.low..=self.high).contains(&value)
     }
 
-    /// Half of its width, as a share of the median.
+    /// Returns half of the width, as a share of the median.
     #[must_use]
     pub fn relative_half_width(&self) -> f64 {
         (self.high - self.low) / 2.0 / self.median
     }
 }
 
-/// The middle of `sample`, or the mean of its middle two; `None` when there is no sample.
+/// Returns the middle of `sample`, or the mean of its middle two; `None` if it is empty.
 #[must_use]
 pub fn median(sample: &[f64]) -> Option<f64> {
     median_in_place(&mut sample.to_vec())
 }
 
-/// The lower quartile of `sample`, of up to four values the smallest; `None` when there is no
-/// sample. For times of which the machine's own share is wanted: what disturbs only adds to them.
+/// Returns the lower quartile of `sample`, the smallest of up to four values; `None` if it is
+/// empty. Use it for times without interference, which only adds to them.
 #[must_use]
 pub fn lower_quartile(sample: &[f64]) -> Option<f64> {
     let mut sorted = sample.to_vec();
@@ -53,17 +53,17 @@ pub fn lower_quartile(sample: &[f64]) -> Option<f64> {
     sorted.get(sample.len().saturating_sub(1) / 4).copied()
 }
 
-/// Values that an interval needs at least.
+/// The smallest number of values for an interval.
 pub const LEAST_VALUES: usize = 6;
 
-/// The median of `sample` with its 95 % interval, an expanded percentile interval of the bootstrap:
-/// that of the plain percentiles is too narrow for few values. `None` when there is no sample.
+/// Returns the median of `sample` with its 95 % interval; `None` if the sample is empty.
 ///
-/// Of fewer than [`LEAST_VALUES`] no interval covers 95 %; it is then the smallest and the largest
-/// value, or nearly.
+/// It is an expanded percentile interval of the bootstrap, because plain percentiles are too narrow
+/// for few values. No interval of fewer than [`LEAST_VALUES`] values covers 95 %; it then reaches
+/// from about the smallest to about the largest value.
 ///
-/// It wants independent values, so ratios within a round, not times: what slows a whole round down
-/// cancels in the ratio.
+/// The values must be independent. So use ratios within a round, not times: a slow round affects
+/// both times of a ratio alike.
 ///
 /// Source: Efron, "Bootstrap methods: another look at the jackknife", 1979; expanded after
 /// Hesterberg, "What teachers should know about the bootstrap", The American Statistician 69 (4),
@@ -75,33 +75,33 @@ pub fn median_interval(sample: &[f64]) -> Option<Interval> {
     Some(interval(median, sample.len(), || resampled_median(sample, &mut random)))
 }
 
-/// The median of `above` over that of `below`, where nothing pairs their values, with its interval
-/// as [`median_interval`] has it; `None` if either is empty.
+/// Returns the median of `above` over that of `below` with its interval, for samples that are not
+/// paired; `None` if either is empty. See [`median_interval`].
 #[must_use]
 pub fn median_ratio_interval(above: &[f64], below: &[f64]) -> Option<Interval> {
     let ratio = median(above)? / median(below)?;
     let mut random = SplitMix64::new(SEED);
-    // The smaller sample says how far the percentiles are too narrow.
+    // The smaller sample decides how much the percentiles are expanded.
     let values = above.len().min(below.len());
     let resampled = || resampled_median(above, &mut random) / resampled_median(below, &mut random);
     Some(interval(ratio, values, resampled))
 }
 
-/// The median of `above` over `below`, measured in the same rounds, with its interval; `None`
-/// without a round.
+/// Returns the median of `above` over `below`, measured in the same rounds, with its interval;
+/// `None` if there is no round.
 #[must_use]
 pub fn ratio_interval(above: &[u64], below: &[u64]) -> Option<Interval> {
     median_interval(&ratios(above, below))
 }
 
-/// `above` over `below`, round by round.
+/// Returns `above` over `below`, round by round.
 #[must_use]
 pub fn ratios(above: &[u64], below: &[u64]) -> Vec<f64> {
-    // A clock too coarse for the rendering must not make a ratio of 0 / 0.
+    // A coarse clock must not give a ratio of 0 / 0.
     above.iter().zip(below).map(|(&a, &b)| a.max(1) as f64 / b.max(1) as f64).collect()
 }
 
-/// Around `estimate`, from `values` values, by what resamples of them give.
+/// Returns the interval around `estimate`, which is from `values` values, by resampling.
 fn interval(estimate: f64, values: usize, mut resampled: impl FnMut() -> f64) -> Interval {
     let mut estimates: Vec<f64> = std::iter::repeat_with(&mut resampled).take(RESAMPLES).collect();
     estimates.sort_unstable_by(f64::total_cmp);
@@ -109,21 +109,21 @@ fn interval(estimate: f64, values: usize, mut resampled: impl FnMut() -> f64) ->
     Interval { median: estimate, low: estimates[outside], high: estimates[RESAMPLES - 1 - outside] }
 }
 
-/// What share of the resamples lies outside of the interval at each end, 2.5 % of many values: as
-/// far out in the normal distribution as Student's with its wider tails, times the root of n / (n -
-/// 1), has its 2.5 %.
+/// Returns the share of the resamples outside of the interval at each end; 2.5 % for many values.
+/// It is the tail of the normal distribution beyond Student's 2.5 % point times the root of
+/// n / (n - 1).
 fn tail(values: usize) -> f64 {
     let freedom = values.saturating_sub(1).max(1) as f64;
     let far = student(freedom) * (1.0 + 1.0 / freedom).sqrt();
     libm::erfc(far / SQRT_2) / 2.0
 }
 
-/// Above which Student's distribution has 2.5 %; off by less than 0.01 from 5 degrees of freedom
-/// on.
+/// Returns the point above which Student's distribution has 2.5 %. The error is below 0.01 from 5
+/// degrees of freedom on.
 ///
 /// Source: Abramowitz and Stegun, "Handbook of Mathematical Functions", 26.7.5.
 fn student(freedom: f64) -> f64 {
-    /// Of the normal distribution.
+    /// The same point of the normal distribution.
     const Z: f64 = 1.959_963_984_540_054;
     let [z3, z5, z7] = [3, 5, 7].map(|power| Z.powi(power));
     let first = (z3 + Z) / 4.0;
@@ -132,21 +132,21 @@ fn student(freedom: f64) -> f64 {
     Z + (first + (second + third / freedom) / freedom) / freedom
 }
 
-/// The median of as many values as there are in `sample`, each any of them.
+/// Returns the median of a resample: as many values as `sample` has, drawn with replacement.
 fn resampled_median(sample: &[f64], random: &mut SplitMix64) -> f64 {
     let mut resample: Vec<f64> =
         sample.iter().map(|_| sample[random.below(sample.len())]).collect();
     median_in_place(&mut resample).unwrap_or(f64::NAN)
 }
 
-/// How much of `threads` threads a speed-up uses: 1 is all of it.
+/// Returns the share of `threads` threads that a speed-up uses: 1 is perfect.
 #[must_use]
 pub fn efficiency(speedup: f64, threads: usize) -> f64 {
     speedup / threads as f64
 }
 
-/// The serial fraction that explains a speed-up on `threads` threads: 0 is perfectly parallel, 1
-/// not at all, negative is faster than linear. `None` for one thread, which says nothing of it.
+/// Returns the serial fraction that explains a speed-up on `threads` threads: 0 is perfectly
+/// parallel, 1 is serial, below 0 is faster than linear. `None` for one thread.
 ///
 /// Source: Karp and Flatt, "Measuring parallel processor performance", CACM 33 (5), 1990.
 #[must_use]
@@ -163,7 +163,7 @@ fn median_in_place(sample: &mut [f64]) -> Option<f64> {
     let even = sample.len().is_multiple_of(2);
     let (below, &mut upper, _) = sample.select_nth_unstable_by(middle, f64::total_cmp);
     let lower = below.iter().copied().max_by(f64::total_cmp).filter(|_| even).unwrap_or(upper);
-    // The mean of two equal values is that value, bit for bit, only when it is not computed.
+    // Do not compute the mean of two equal values: it may differ from them in the last bit.
     Some(if lower == upper { upper } else { f64::midpoint(lower, upper) })
 }
 
@@ -186,7 +186,7 @@ mod tests {
         assert_eq!(lower_quartile(&(1..=25).rev().map(f64::from).collect::<Vec<_>>()), Some(7.0));
     }
 
-    /// The tables of textbooks, and that few values do not have 2.5 % of the resamples outside.
+    /// Compares with the tables of textbooks, and with tails worked out for few values.
     #[test]
     fn tails_are_expanded_by_student() {
         for (freedom, expected) in
@@ -201,8 +201,8 @@ mod tests {
         assert!(tail(1) < 1e-9 && (tail(1_000_000) - 0.025).abs() < 1e-6);
     }
 
-    /// Time of a rendering that usually takes 1, give or take 1 %, and one time in seven is
-    /// disturbed: 15 % longer on average, and sometimes much longer.
+    /// Returns the time of a rendering that takes 1 with a deviation of 1 %. One in seven is
+    /// disturbed: it takes 15 % longer on average, and sometimes much longer.
     fn noisy(random: &mut SplitMix64) -> f64 {
         let normal: f64 = (0..12).map(|_| random.fraction()).sum::<f64>() - 6.0;
         let disturbed =
@@ -210,11 +210,10 @@ mod tests {
         (0.01 * normal).exp() + disturbed
     }
 
-    /// Catches percentiles that are not expanded, which cover 92 % of the time at 8 values, and an
-    /// interval that is wide for safety's sake. 1000 trials: three standard deviations of a
-    /// coverage of 95 % are 2.1 %.
+    /// Catches percentiles that are not expanded, which cover 92 % at 8 values, and intervals that
+    /// are too wide. With 1000 trials three standard deviations of a coverage of 95 % are 2.1 %.
     #[test]
-    fn intervals_cover_what_they_promise() {
+    fn intervals_cover_95_percent() {
         for (values, widest) in [(8, 0.15), (12, 0.045), (20, 0.03), (40, 0.02)] {
             let mut random = SplitMix64::new(values as u64);
             let (mut covered, mut widths) = (0, Vec::new());
@@ -266,7 +265,7 @@ mod tests {
         assert_eq!(median_interval(&[]), None);
     }
 
-    /// 5.67 s on one thread, 1.60 s on five.
+    /// Uses the figures of the lab report: 5.67 s on one thread, 1.60 s on five.
     #[test]
     fn speedup_of_the_report() {
         let speedup: f64 = 5.67 / 1.60;

@@ -1,13 +1,13 @@
-//! Work that costs what is asked for: no scene, nothing shared, nothing in memory.
+//! Synthetic work with a chosen cost for each pixel. It has no scene and shares no memory.
 
 use rayweave_contract::{Rgb, Tile, Work};
 
-/// A busy loop of so many steps at each pixel `(x, y)`, as the function says. A pixel's colour
+/// A busy loop at each pixel `(x, y)` of as many steps as the function returns. A pixel's colour
 /// follows from its place and its steps alone, so that an image can be verified.
 #[derive(Clone, Copy, Debug)]
 pub struct Synthetic<Steps>(pub Steps);
 
-/// Work of `steps` steps at every pixel.
+/// Returns a work of `steps` steps at every pixel.
 #[must_use]
 pub fn even(steps: u32) -> Synthetic<impl Fn(u32, u32) -> u32 + Sync> {
     Synthetic(move |_, _| steps)
@@ -31,8 +31,8 @@ fn color(x: u32, y: u32, steps: u32) -> Rgb {
     [0, 21, 42].map(|shift| (state >> shift & 0x1f_ffff) as f32 / 0x20_0000 as f32)
 }
 
-/// Each step needs the one before it, and no compiler knows a shorter way: Marsaglia, "Xorshift
-/// RNGs", 2003.
+/// Returns the next state. Each step depends on the one before, and compilers cannot shorten it.
+/// Source: Marsaglia, "Xorshift RNGs", 2003.
 fn step(mut state: u64) -> u64 {
     state ^= state << 13;
     state ^= state >> 7;
@@ -45,7 +45,7 @@ mod tests {
     use rayweave_contract::Image;
     use std::num::NonZeroU32;
 
-    /// Catches colours that depend on the tile, and steps or places that make no difference.
+    /// Catches colours that depend on the tile, or do not depend on the steps or the place.
     #[test]
     fn a_color_follows_from_place_and_steps() {
         let draw = |work: &dyn Work, tile| {

@@ -4,7 +4,7 @@ use rayweave_contract::{Image, ImageError, Work};
 use std::num::NonZeroU32;
 use std::time::{Duration, Instant};
 
-/// The number of passes. Of each tile's times the shortest counts, because interference only adds
+/// The number of passes. The shortest time of each tile is used, because interference only adds
 /// time.
 const PASSES: usize = 3;
 

@@ -1,32 +1,30 @@
-//! Laws of speed-up, fitted by least squares.
+//! Fits laws of speed-up by least squares.
 //!
-//! Gunther's law of scalability gives what `n` threads make of one as `C(n) = n / (1 + s (n - 1) +
-//! k n (n - 1))`; with `k = 0` it is Amdahl's. Sources: Amdahl, "Validity of the single processor
-//! approach to achieving large scale computing capabilities", 1967; Gunther, "A simple capacity
-//! model of massively parallel transaction systems", 1993.
+//! Gunther's universal scalability law gives the speed-up on `n` threads as
+//! `C(n) = n / (1 + s (n - 1) + k n (n - 1))`; with `k = 0` it is Amdahl's law. Sources: Amdahl,
+//! "Validity of the single processor approach to achieving large scale computing capabilities",
+//! 1967; Gunther, "A simple capacity model of massively parallel transaction systems", 1993.
 
-/// A law with its fitted shares.
+/// A law of speed-up with its fitted shares.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Law {
-    /// The share of the work that waits for its turn, Gunther's sigma: 0 to 1. In Amdahl's law the
-    /// serial share.
+    /// The serial share of the work: 0 to 1. Gunther's sigma, contention.
     pub serial: f64,
-    /// What each thread costs each other one, Gunther's kappa, as a share of the work: 0 or more.
-    /// In Amdahl's law 0.
+    /// The cost of each thread to each other thread, as a share of the work: 0 or more. Gunther's
+    /// kappa, coherency; 0 in Amdahl's law.
     pub crosstalk: f64,
-    /// Root of the mean square of the relative errors, in time, over the points fitted to.
+    /// The root mean square of the relative errors in time at the fitted points.
     pub error: f64,
 }
 
 impl Law {
-    /// What `threads` threads make of one.
+    /// Returns the speed-up on `threads` threads.
     #[must_use]
     pub fn speedup(&self, threads: f64) -> f64 {
         threads / (1.0 + self.serial * (threads - 1.0) + self.crosstalk * threads * (threads - 1.0))
     }
 
-    /// The number of threads beyond which more of them are slower; `None` where more are always
-    /// faster.
+    /// Returns the number of threads with the largest speed-up; `None` if it always grows.
     #[must_use]
     pub fn peak(&self) -> Option<f64> {
         (self.crosstalk > 0.0)
@@ -34,28 +32,28 @@ impl Law {
     }
 }
 
-/// Amdahl's law for `points`: numbers of threads, and how many times as fast as one thread they
-/// were. `None` without a point of two threads or more.
+/// Fits Amdahl's law to `points`, each a number of threads and its speed-up over one thread. `None`
+/// if there is no point of two threads or more.
 #[must_use]
 pub fn amdahl(points: &[(usize, f64)]) -> Option<Law> {
     let sums = Sums::of(points)?;
     Some(law(points, (sums.bs / sums.ss).clamp(0.0, 1.0), 0.0))
 }
 
-/// Gunther's law for `points`, as [`amdahl`]. `None` without points of two different numbers of
-/// threads above one.
+/// Fits Gunther's law to `points` as [`amdahl`] does. `None` if there are no points of two
+/// different numbers of threads above one.
 #[must_use]
 pub fn usl(points: &[(usize, f64)]) -> Option<Law> {
     let Sums { ss, sk, kk, bs, bk } = Sums::of(points)?;
     let determinant = ss * kk - sk * sk;
-    // The two columns of a single point are the same up to a factor.
+    // With a single point the two columns are proportional.
     if determinant <= 1e-12 * ss * kk {
         return None;
     }
     let (serial, crosstalk) =
         ((bs * kk - bk * sk) / determinant, (bk * ss - bs * sk) / determinant);
-    // Where a share comes out beyond its bounds the best one allowed is there, and the other is
-    // fitted to the rest.
+    // If a share is out of bounds, the optimum is at the bound; the other share is fitted to the
+    // rest.
     Some(if crosstalk < 0.0 {
         law(points, (bs / ss).clamp(0.0, 1.0), 0.0)
     } else if (0.0..=1.0).contains(&serial) {
@@ -66,8 +64,9 @@ pub fn usl(points: &[(usize, f64)]) -> Option<Law> {
     })
 }
 
-/// The normal equations. `n / C(n)` is linear in both shares; each equation is divided by what was
-/// measured, so that relative errors count, and one of 2 % at 1024 threads as much as one at 2.
+/// The sums of the normal equations. `n / C(n)` is linear in both shares. Each equation is weighted
+/// with the inverse of its value, so that relative errors are minimised: 2 % at 1024 threads count
+/// as much as at 2.
 #[derive(Debug, Default)]
 struct Sums {
     ss: f64,
@@ -112,7 +111,7 @@ mod tests {
         [1, 2, 4, 16, 64, 1024].map(|threads| (threads, speedup(threads as f64))).to_vec()
     }
 
-    /// Catches wrong normal equations: what follows a law exactly gives its shares back.
+    /// Catches wrong normal equations: points on a law give back its shares.
     #[test]
     fn the_shares_of_exact_points() {
         let close = |a: f64, b: f64| assert!((a - b).abs() <= 1e-9, "{a} is not {b}");
@@ -130,20 +129,19 @@ mod tests {
         assert_eq!((law.crosstalk, law.peak()), (0.0, None));
     }
 
-    /// Catches shares below 0, which would promise more than `n` times the speed, and work of which
-    /// more than all is serial.
+    /// Catches shares below 0, which would give a speed-up above `n`, and a serial share above 1.
     #[test]
     fn shares_are_kept_within_bounds() {
         let faster = points(|n| 1.1 * n);
         assert_eq!(amdahl(&faster).map(|law| law.serial), Some(0.0));
         assert_eq!(usl(&faster).map(|law| (law.serial, law.crosstalk)), Some((0.0, 0.0)));
-        // Worse in the middle than at the end: crosstalk alone would be negative.
+        // Worse in the middle than at the end: an unbounded crosstalk would be negative.
         let dent = usl(&[(2, 1.2), (4, 2.0), (64, 60.0)]).expect("a law");
         assert!(dent.serial > 0.0 && dent.crosstalk == 0.0, "{dent:?}");
-        // Good for long, then bad: the serial share alone would be negative.
+        // Perfect up to 4, then bad: an unbounded serial share would be negative.
         let cliff = usl(&[(2, 2.0), (4, 4.0), (64, 8.0)]).expect("a law");
         assert!(cliff.serial == 0.0 && cliff.crosstalk > 0.0, "{cliff:?}");
-        // Threads that only disturb.
+        // Threads that make everything slower.
         let slower = points(|n| 1.0 / n);
         assert_eq!(amdahl(&slower).map(|law| law.serial), Some(1.0));
         let law = usl(&slower).expect("a law");

@@ -1,9 +1,10 @@
-//! Forecasts of a strategy's policy for more threads: a simulation, and the laws fitted to it.
+//! Predicts the time of a strategy on any number of threads from its policy, by simulation, and
+//! fits laws of speed-up.
 //!
 //! * [`simulate`]: replays the costs of pieces under a [`Policy`](rayweave_contract::Policy);
-//! * [`fit`]: Amdahl's law and Gunther's, by least squares.
+//! * [`fit`]: fits Amdahl's law and Gunther's by least squares.
 //!
-//! This crate starts no thread and reads no clock: what things cost is measured elsewhere.
+//! This crate starts no thread and reads no clock. The caller measures the costs.
 
 pub mod fit;
 mod scheduler;

@@ -1,31 +1,31 @@
-//! Who gets which pieces: each [`Scheduling`] as an answer to a thread that asks for more.
+//! Assigns pieces to threads: each [`Scheduling`] as a function that returns a thread's next chunk.
 
 use rayweave_contract::Scheduling;
 use std::collections::VecDeque;
 use std::ops::Range;
 
-/// What a thread got.
+/// The pieces that a thread takes at once.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Chunk {
-    /// Nobody else gets these any more.
+    /// The pieces, which no other thread gets.
     pub(crate) pieces: Range<usize>,
     pub(crate) source: Source,
-    /// Whether others find something to take that was not there before.
-    pub(crate) laid_out: bool,
+    /// Whether the thread leaves pieces in its queue that others can steal.
+    pub(crate) leaves_rest: bool,
 }
 
-/// Where pieces came from.
+/// The owner of the pieces before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Source {
-    /// They were the thread's own.
+    /// The thread itself.
     Own,
-    /// What all threads take from.
+    /// The queue shared by all threads.
     Shared,
-    /// They were another thread's.
+    /// Another thread.
     Stolen,
 }
 
-/// Pieces that are left, by whom they belong to.
+/// The remaining pieces, by owner.
 #[derive(Debug)]
 pub(crate) enum Scheduler {
     Static(Vec<Range<usize>>),
@@ -35,7 +35,7 @@ pub(crate) enum Scheduler {
     RecursiveSplit(Vec<VecDeque<Part>>),
 }
 
-/// A range that may still be halved so often.
+/// A range with rayon's budget of splits, which every split halves.
 #[derive(Clone, Debug)]
 pub(crate) struct Part {
     pieces: Range<usize>,
@@ -59,9 +59,9 @@ impl Scheduler {
         }
     }
 
-    /// What `thread` gets when it asks; `None` if there is nothing for it at the moment.
+    /// Returns the next chunk of `thread`; `None` if there is none at the moment.
     pub(crate) fn next(&mut self, thread: usize) -> Option<Chunk> {
-        let mut laid_out = false;
+        let mut leaves_rest = false;
         let (pieces, source) = match self {
             Self::Static(shares) => (std::mem::take(&mut shares[thread]), Source::Own),
             Self::Dynamic { left, chunk } => (take_front(left, *chunk), Source::Shared),
@@ -72,15 +72,15 @@ impl Scheduler {
             Self::WorkStealing(shares) => steal(shares, thread),
             Self::RecursiveSplit(queues) => {
                 let chunk = halve(queues, thread)?;
-                laid_out = !queues[thread].is_empty();
+                leaves_rest = !queues[thread].is_empty();
                 chunk
             }
         };
-        (!pieces.is_empty()).then_some(Chunk { pieces, source, laid_out })
+        (!pieces.is_empty()).then_some(Chunk { pieces, source, leaves_rest })
     }
 }
 
-/// One of the thread's own, or the latter half of what the richest has.
+/// Returns one of the thread's own pieces, or one of the second half of the largest share.
 fn steal(shares: &mut [Range<usize>], thread: usize) -> (Range<usize>, Source) {
     let mut source = Source::Own;
     if shares[thread].is_empty()
@@ -94,8 +94,8 @@ fn steal(shares: &mut [Range<usize>], thread: usize) -> (Range<usize>, Source) {
     (take_front(&mut shares[thread], 1), source)
 }
 
-/// As rayon does: the thread's latest part, or the oldest of the next thread that has one, halved
-/// as long as it may be; the halves at the right are there for others.
+/// Returns the thread's latest part, or the oldest of the next thread that has one. The part is
+/// halved as often as it may be; the right halves go to the thread's queue. This is rayon's way.
 fn halve(queues: &mut [VecDeque<Part>], thread: usize) -> Option<(Range<usize>, Source)> {
     let threads = queues.len();
     let (mut part, source) = match queues[thread].pop_back() {
@@ -103,8 +103,8 @@ fn halve(queues: &mut [VecDeque<Part>], thread: usize) -> Option<(Range<usize>, 
         None => {
             let others = (1..threads).map(|distance| (thread + distance) % threads);
             let mut part = others.filter_map(|other| queues[other].pop_front()).next()?;
-            // Somebody is idle, so smaller parts are wanted again; one more, for the halving that
-            // follows.
+            // A thread is idle, so smaller parts are needed again. The factor 2 makes up for the
+            // division in the loop below.
             part.splits = 2 * threads.max(part.splits / 2);
             (part, Source::Stolen)
         }

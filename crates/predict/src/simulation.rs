@@ -1,8 +1,8 @@
-//! A discrete-event simulation of a strategy: the costs of its pieces are replayed under its policy.
+//! A discrete-event simulation of a strategy: replays the costs of its pieces under its policy.
 //!
-//! What it leaves out: all threads compute equally fast, each on a core of its own, as does the
-//! owner of the image that pieces are sent to; whoever waits for a lock gets it in the order of
-//! asking; memory has any bandwidth.
+//! The model is simpler than a machine. All threads compute equally fast, each on a core of its
+//! own, as does the owner of the image that pieces are sent to. A lock is granted in the order of
+//! requests. Memory bandwidth is unlimited.
 
 use crate::scheduler::{Scheduler, Source};
 use rayweave_contract::{Output, Policy};
@@ -13,46 +13,46 @@ use std::ops::Range;
 #[cfg(test)]
 mod tests;
 
-/// What spreading costs beside the work, in nanoseconds.
+/// The costs of a strategy beside the work, in nanoseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Overheads {
-    /// Before the first thread begins, and after the last has ended.
+    /// The time before the first thread begins and after the last has ended.
     pub start: f64,
-    /// From one thread's beginning to the next one's.
+    /// The time from the begin of one thread to that of the next.
     pub next_start: f64,
-    /// For each piece, on the thread that computes it.
+    /// The time for each piece, on the thread that computes it.
     pub piece: f64,
-    /// To take pieces from what all threads share.
+    /// The time to take pieces from the shared queue.
     pub take: Access,
-    /// To put a piece into the image under the lock, or to receive it.
+    /// The time to copy a piece into the image under the lock, or to receive it.
     pub deliver: Access,
-    /// To take pieces from another thread.
+    /// The time to take pieces from another thread.
     pub steal: f64,
 }
 
-/// The cost of something that one thread at a time has, in nanoseconds.
+/// The cost of a critical section, in nanoseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Access {
-    /// To have it.
+    /// The time in the critical section.
     pub hold: f64,
-    /// More, where another thread had it last.
+    /// The additional time if another thread was in it last.
     pub handover: f64,
 }
 
 /// A simulated rendering.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SimulatedRender {
-    /// What the rendering took, in nanoseconds.
+    /// The time of the rendering, in nanoseconds.
     pub time: f64,
-    /// What each thread computed, in nanoseconds.
+    /// The time that each thread computed, in nanoseconds.
     pub computed: Vec<f64>,
 }
 
-/// The rendering of pieces that take `pieces` nanoseconds each, in the order of their numbers, by
-/// `threads` threads; 0 of them are taken for 1. Where a piece is a band there is one for each
-/// thread.
+/// Simulates a rendering by `threads` threads, or 1 if it is 0. `pieces` are the nanoseconds of
+/// each piece, in the order of their numbers; if a piece is a band there is one for each thread.
 ///
-/// Of equal times the lower thread's comes first, so that the same input gives the same result.
+/// Of events at the same time that of the lower thread comes first, so that the same input gives
+/// the same result.
 #[must_use]
 pub fn simulate(
     policy: Policy,
@@ -91,17 +91,18 @@ struct Simulation<'a> {
     pieces: &'a [f64],
     overheads: &'a Overheads,
     scheduler: Scheduler,
-    /// What pieces are taken from.
+    /// The queue that pieces are taken from.
     shared_queue: Shared,
-    /// Where they are put.
+    /// The image that they are copied into.
     image: Shared,
-    /// What each thread has taken, and not yet computed.
+    /// The pieces that each thread has taken and not yet computed.
     local_queues: Vec<Range<usize>>,
     computed: Vec<f64>,
     events: BinaryHeap<Reverse<Event>>,
-    /// Threads that found nothing to take, and try again when something is laid out.
+    /// The threads that found nothing to take. They try again when another thread leaves pieces in
+    /// its queue.
     idle: Vec<usize>,
-    /// When the last thread ended, so far.
+    /// The latest end of a thread so far.
     end: f64,
 }
 
@@ -110,7 +111,7 @@ impl Simulation<'_> {
         self.events.push(Reverse(Event { time, thread, step }));
     }
 
-    /// A thread has nothing in hand and asks for more.
+    /// Takes the next chunk for a thread whose local queue is empty.
     fn take(&mut self, time: f64, thread: usize) {
         let Some(chunk) = self.scheduler.next(thread) else {
             self.end = self.end.max(time);
@@ -122,7 +123,7 @@ impl Simulation<'_> {
             Source::Shared => self.shared_queue.access(time, thread, &self.overheads.take),
             Source::Stolen => time + self.overheads.steal,
         };
-        if chunk.laid_out {
+        if chunk.leaves_rest {
             for other in std::mem::take(&mut self.idle) {
                 self.at(begin, other, Step::Take);
             }
@@ -131,7 +132,7 @@ impl Simulation<'_> {
         self.compute(begin, thread);
     }
 
-    /// A thread computes what it has in hand, up to its next meeting with the others.
+    /// Computes the pieces of a thread's local queue, up to its next critical section.
     fn compute(&mut self, mut time: f64, thread: usize) {
         while let Some(piece) = self.local_queues[thread].next() {
             self.computed[thread] += self.pieces[piece];
@@ -143,17 +144,17 @@ impl Simulation<'_> {
         self.at(time, thread, Step::Take);
     }
 
-    /// A thread has computed a piece.
+    /// Delivers a piece that a thread has computed.
     fn deliver(&mut self, time: f64, thread: usize) {
         let delivered = self.image.access(time, thread, &self.overheads.deliver);
         self.end = self.end.max(delivered);
-        // A piece that is sent is the owner's business.
+        // The owner of the image receives a piece while the sender computes on.
         let free = if self.policy.output == Output::Channel { time } else { delivered };
         self.compute(free, thread);
     }
 }
 
-/// Something that one thread at a time has.
+/// A critical section.
 #[derive(Debug, Default)]
 struct Shared {
     free: f64,
@@ -161,7 +162,7 @@ struct Shared {
 }
 
 impl Shared {
-    /// When `thread`, asking at `time`, has had it.
+    /// Returns the time at which `thread`, which asks at `time`, leaves the critical section.
     fn access(&mut self, time: f64, thread: usize, cost: &Access) -> f64 {
         let handed_over = self.last.replace(thread).is_some_and(|last| last != thread);
         let handover = if handed_over { cost.handover } else { 0.0 };

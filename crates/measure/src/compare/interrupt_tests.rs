@@ -3,10 +3,11 @@
 use super::tests::{QUEUE, REFERENCE, entry, fake, protocol, right};
 use super::*;
 
-/// Three rows: a call for the reference's image, three that warm up, three a round.
+/// Returns the comparison of three rows that is interrupted in this call: one call is for the
+/// reference's image, three are for the warm-up, then three for each round.
 fn interrupted_in(call: usize) -> Result<Comparison, CompareError> {
     let mut calls = 0;
-    // The call that is interrupted fails, since its process is interrupted too.
+    // The interrupted call fails, because its process is interrupted too.
     let mut executor = fake(|_, _| {
         calls += 1;
         if calls == call { Err("killed".to_owned()) } else { right(1) }
@@ -18,10 +19,10 @@ fn interrupted_in(call: usize) -> Result<Comparison, CompareError> {
     result
 }
 
-/// Catches the rounds before thrown away, those of the broken round counted, and a rendering that
-/// was killed told as a failure, wherever in a round it is.
+/// Catches complete rounds that are lost, samples of the incomplete round that are kept, and an
+/// interrupted rendering reported as a failure, at each place in a round.
 #[test]
-fn what_is_interrupted_is_of_the_complete_rounds() {
+fn an_interrupted_comparison_has_the_complete_rounds() {
     for slot in 0..3 {
         let comparison = interrupted_in(1 + 3 + 7 * 3 + slot + 1).expect("enough rounds");
         assert_eq!((comparison.rounds, comparison.interrupted), (7, true), "slot {slot}");
@@ -34,9 +35,9 @@ fn what_is_interrupted_is_of_the_complete_rounds() {
     assert!(!all.expect("a reference image").interrupted);
 }
 
-/// Catches a table of fewer rounds than an interval takes.
+/// Catches a table of fewer rounds than an interval needs.
 #[test]
-fn of_too_few_rounds_there_is_no_table() {
+fn too_few_rounds_give_no_table() {
     for (call, rounds) in [(1, 0), (3, 0), (4, 0), (5, 0), (8, 1), (1 + 3 + 6 * 3, 5)] {
         let error = interrupted_in(call).expect_err("too early").to_string();
         let expected =
@@ -46,9 +47,9 @@ fn of_too_few_rounds_there_is_no_table() {
     assert_eq!(interrupted_in(1 + 3 + 6 * 3 + 1).expect("enough rounds").rounds, 6);
 }
 
-/// Catches a rendering that is begun after the interruption, which nobody ends.
+/// Catches a rendering that begins after the interruption.
 #[test]
-fn nothing_is_rendered_after_it() {
+fn nothing_is_rendered_after_an_interruption() {
     let mut executor = fake(|_, _| right(1));
     executor.interrupted_in = 0;
     let result = protocol(8, 10, u64::MAX).run(&REFERENCE, &[], &mut executor, |_| {});

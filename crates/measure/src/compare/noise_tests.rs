@@ -1,21 +1,20 @@
-//! What the protocol finds out in spite of noise: many comparisons of renderings whose times are
-//! made up.
+//! Tests of the protocol under noise, with many comparisons of simulated times.
 
 use super::tests::{QUEUE, REFERENCE, entry, image};
 use super::*;
 use crate::random::SplitMix64;
 use crate::statistics::{Interval, median};
 
-/// A machine with noise: all times drift together, each is a little off, and some are disturbed.
+/// A noisy machine: all times drift together, each has a small error, and some are disturbed.
 struct Noisy {
     random: SplitMix64,
     clock: f64,
-    /// Of the queue's time.
+    /// The queue's time over the reference's.
     slowdown: f64,
 }
 
 impl Noisy {
-    /// About normal, with a standard deviation of 1.
+    /// Returns a number from about the normal distribution, with a standard deviation of 1.
     fn normal(&mut self) -> f64 {
         (0..12).map(|_| self.random.fraction()).sum::<f64>() - 6.0
     }
@@ -39,8 +38,7 @@ impl Executor for Noisy {
     }
 }
 
-/// The comparisons that `count` runs give, of a queue that takes `slowdown` times as long as the
-/// reference.
+/// Returns `count` comparisons of a queue that takes `slowdown` times as long as the reference.
 fn runs(count: u64, protocol: Protocol, slowdown: f64) -> Vec<Comparison> {
     let run = |seed| {
         let mut executor = Noisy { random: SplitMix64::new(seed), clock: 0.0, slowdown };
@@ -54,12 +52,12 @@ fn contain_one(intervals: &[Interval]) -> usize {
     intervals.iter().filter(|interval| interval.contains(1.0)).count()
 }
 
-/// As a comparison of many strategies has them by default.
+/// The rounds of a comparison of many strategies by default.
 const ROUNDS: Protocol =
     Protocol { min_rounds: 20, max_rounds: 20, budget: Duration::MAX, goal: None, seed: 0 };
 
-/// 19 of 20 runs, of 2 % or less: catches rows that are measured one after the other, where drift
-/// is taken for a difference, as well as intervals that are too narrow or too wide.
+/// In 19 of 20 runs, with intervals of 2 % or less. Catches rows measured one after the other,
+/// where drift looks like a difference, and intervals that are too narrow or too wide.
 #[test]
 fn the_control_has_one_in_its_interval() {
     let controls: Vec<Interval> =
@@ -71,19 +69,19 @@ fn the_control_has_one_in_its_interval() {
     assert!(width < 0.02, "{width}");
 }
 
-/// 9 of 10 runs.
+/// In 9 of 10 runs.
 #[test]
-fn three_percent_are_found() {
+fn a_difference_of_three_percent_is_found() {
     let speedup = |run: &Comparison| run.rows[2].speedup.expect("figures");
     let slower: Vec<Interval> = runs(200, ROUNDS, 1.03).iter().map(speedup).collect();
     let missed = contain_one(&slower);
     assert!(missed <= 20, "missed by {missed} of 200");
-    assert!(slower.iter().filter(|interval| interval.low > 1.0).count() <= 1, "taken for faster");
+    assert!(slower.iter().filter(|interval| interval.low > 1.0).count() <= 1, "measured as faster");
 }
 
-/// Catches a goal that ends the measuring at the first narrow interval, which chance gives too.
+/// Catches a goal that ends the measurement at the first interval that is narrow by chance.
 #[test]
-fn a_goal_ends_the_rounds_and_keeps_the_promise() {
+fn a_goal_ends_the_rounds_and_keeps_the_coverage() {
     let goal = 0.01;
     let protocol = Protocol {
         goal: Some(goal),
@@ -106,9 +104,9 @@ fn a_goal_ends_the_rounds_and_keeps_the_promise() {
     assert!(contained >= 190, "{contained} of 200 after {typical} rounds");
 }
 
-/// Catches a goal that a row without figures keeps from being met.
+/// Catches a goal that is never met because of a row without figures.
 #[test]
-fn a_row_that_failed_is_waited_for_by_nobody() {
+fn a_failed_row_does_not_delay_the_goal() {
     struct Fails(Noisy);
 
     impl Executor for Fails {

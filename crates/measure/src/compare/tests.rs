@@ -1,4 +1,4 @@
-//! The protocol's logic, with a clock and renderings that are made up.
+//! Tests of the protocol's logic with a fake executor and its clock.
 
 use super::*;
 use crate::fakes::FakeStrategy;
@@ -9,13 +9,13 @@ pub(super) static REFERENCE: FakeStrategy = FakeStrategy::named("reference", Thr
 pub(super) static POOL: FakeStrategy = FakeStrategy::named("pool", Threads::Pool);
 pub(super) static QUEUE: FakeStrategy = FakeStrategy::named("queue", Threads::PerRender);
 
-/// Answers the n-th call of a strategy by a function of its name and n, and moves the clock by the
-/// answer.
+/// An executor that answers the n-th call of a strategy by a function of its name and n, and
+/// advances its clock by the answer.
 pub(super) struct Fake<F> {
     answer: F,
     pub(super) calls: Vec<&'static str>,
     clock: Duration,
-    /// It is interrupted during this call, counted from 1.
+    /// The call during which it is interrupted, counted from 1.
     pub(super) interrupted_in: usize,
 }
 
@@ -125,7 +125,7 @@ fn the_warm_up_is_verified_and_not_counted() {
 
 #[test]
 fn a_speedup_is_the_median_of_the_ratios_within_a_round() {
-    // Rounds slow down by a factor that all rows share; the pool takes half of the reference's
+    // Rounds slow down by a factor that all rows share. The pool takes half of the reference's
     // time.
     let mut executor = fake(|name, call| {
         // The reference is called three times before the first round, and twice in each.
@@ -145,14 +145,14 @@ fn a_speedup_is_the_median_of_the_ratios_within_a_round() {
 
 #[test]
 fn a_wrong_image_ends_its_row_and_no_other() {
-    // Wrong in the third round: after the warm-up and two good ones.
+    // Wrong in the third round, after the warm-up and two right ones.
     let mut executor =
         fake(|name, call| if name == "pool" && call >= 3 { wrong(1) } else { right(4) });
     let comparison = run(protocol(6, 6, u64::MAX), &mut executor);
     let pool = &comparison.rows[2];
     assert!(!pool.identical && !pool.passed() && !comparison.passed());
     assert_eq!(pool.digest, Some(image(0.5)));
-    assert_eq!(pool.samples_ns.len(), 2, "the times of a wrong image are no sample");
+    assert_eq!(pool.samples_ns.len(), 2, "the time of a wrong image is not a sample");
     assert_eq!((pool.median_ns, pool.speedup), (None, None));
     assert_eq!(executor.calls.iter().filter(|&&name| name == "pool").count(), 4);
 
@@ -161,7 +161,7 @@ fn a_wrong_image_ends_its_row_and_no_other() {
     assert_eq!((queue.samples_ns.len(), queue.digest), (6, Some(comparison.digest)));
 }
 
-/// Catches a first image that nobody looks at, and its time in that of the second.
+/// Catches a first image that is not verified, and its time counted in that of the second.
 #[test]
 fn both_images_of_a_fresh_process_are_verified() {
     let both = |render_ns, cold| {
@@ -217,7 +217,7 @@ fn without_a_right_reference_there_are_no_figures() {
         [|| wrong(1), || Err("no memory".to_owned())];
     for failure in failures {
         // The image, the warm-up of the reference and its control, two rounds of both, then the
-        // third.
+        // third round.
         let mut executor =
             fake(|name, call| if name == "reference" && call >= 7 { failure() } else { right(4) });
         let comparison = run(protocol(6, 6, u64::MAX), &mut executor);
@@ -243,7 +243,7 @@ fn the_least_number_of_rounds_is_enough_for_an_interval() {
     assert_eq!((min_rounds, max_rounds, budget, goal), (8, 40, Duration::from_secs(150), None));
 }
 
-/// Catches a time limit that ends after the rounds that are enough without one.
+/// Catches a time limit that ends after the default number of rounds.
 #[test]
 fn a_time_limit_is_the_only_limit() {
     assert_eq!(Protocol::default().within(None), Protocol::default());
@@ -255,7 +255,7 @@ fn a_time_limit_is_the_only_limit() {
 #[test]
 fn rounds_end_with_the_budget_but_not_before_the_least_number() {
     let rounds = |protocol| run(protocol, &mut fake(|_, _| right(10))).rounds;
-    // The reference image takes 10, the warm-up and each round 40: five rounds end at 250.
+    // The reference's image takes 10, the warm-up and each round 40: five rounds end at 250.
     assert_eq!(rounds(protocol(1, 100, 250)), 5);
     assert_eq!(rounds(protocol(1, 100, 249)), 4, "a round that would not end in time is not begun");
     assert_eq!(rounds(protocol(3, 100, 0)), 3);
@@ -274,7 +274,7 @@ fn progress_only_grows_and_stays_below_one() {
     assert!(fractions.last() > Some(&0.8), "{fractions:?}");
 }
 
-/// Counts in the warm-up: twice as many rays as threads were asked for, the half of them redundant.
+/// An executor that counts rays in the warm-up: two for each thread, one of them redundant.
 struct Counting<E>(E);
 
 impl<E: Executor> Executor for Counting<E> {
@@ -309,5 +309,5 @@ fn rays_are_those_of_a_right_image_in_the_warm_up() {
     assert!(rays.eq([counted(1), counted(1), (None, None), counted(4)]));
 
     let comparison = run(protocol(1, 1, 0), &mut fake(|_, _| right(1)));
-    assert!(comparison.rows.iter().all(|row| row.primary_rays.is_none()), "nobody counted");
+    assert!(comparison.rows.iter().all(|row| row.primary_rays.is_none()), "not counted");
 }

@@ -1,11 +1,11 @@
-//! Several executors that are measured in the same rounds.
+//! Tests of several executors that are measured in the same rounds.
 
 use super::tests::{POOL, REFERENCE, entry, protocol, right, wrong};
 use super::*;
 use crate::statistics::{Interval, ratio_interval};
 use std::cell::RefCell;
 
-/// One of several executors: notes its calls where the others do, and moves the clock of all.
+/// One of several executors. All record their calls in one list, which is also their clock.
 struct Part<'a, F> {
     number: usize,
     calls: &'a RefCell<Vec<(usize, &'static str)>>,
@@ -27,7 +27,7 @@ impl<F: FnMut(&'static str, usize) -> Result<Sample, String>> Executor for Part<
 
 type Calls = Vec<(usize, &'static str)>;
 
-/// Two executors together, for some rounds, with the pool beside the reference.
+/// Measures two executors together, with the pool beside the reference.
 fn together(
     rounds: usize,
     first: impl FnMut(&'static str, usize) -> Result<Sample, String>,
@@ -65,7 +65,7 @@ fn together_each_round_has_the_rows_of_all() {
 
 #[test]
 fn times_of_one_over_times_of_another_are_ratios_within_a_round() {
-    // Rounds slow down by a factor that all share; the first's reference is called once more, for
+    // Rounds slow down by a factor that all share. The first's reference is called once more, for
     // the image.
     let slow = |name, call: usize, first| match name {
         "reference" => 1000 << (call.saturating_sub(first) / 2),
@@ -81,7 +81,7 @@ fn times_of_one_over_times_of_another_are_ratios_within_a_round() {
 }
 
 #[test]
-fn together_all_have_to_give_the_first_s_image() {
+fn all_have_to_give_the_image_of_the_first() {
     let ([a, b], _) = together(3, |_, _| right(1), |_, _| wrong(1));
     assert!(a.passed() && a.rows[2].speedup.is_some());
     assert!(b.rows.iter().all(|row| !row.identical && row.speedup.is_none()));
@@ -96,7 +96,7 @@ fn a_reference_that_fails_ends_its_own_comparison() {
     assert!(
         a.passed() && a.rows.iter().all(|row| row.samples_ns.len() == 6 && row.speedup.is_some())
     );
-    // Its warm-up and two rounds, each with the reference and its control, then the third.
+    // The warm-up and two rounds, each with the reference and its control, then the third.
     assert!(
         b.rows.iter().all(|row| (2..=3).contains(&row.samples_ns.len()) && row.speedup.is_none())
     );

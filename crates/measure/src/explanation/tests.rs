@@ -1,4 +1,4 @@
-//! Experiments with strategies of one thread that do as they are told, on a work that only fills.
+//! Tests of the explanation with fake strategies on a work that only fills.
 
 use super::*;
 use crate::fakes::{FakeStrategy, GREY, Grey, SIDE, Skip};
@@ -14,7 +14,7 @@ static REFUSES: FakeStrategy = FakeStrategy::new("refuses", Threads::PerRender, 
     Err(StrategyError::Unavailable { strategy: "refuses", reason: "not today" })
 });
 
-/// With two threads each, in three rounds.
+/// Explains `strategies` with two threads each, in three rounds.
 fn explain(strategies: &[&dyn Strategy]) -> Result<Explanation, ExplainError> {
     let protocol =
         Protocol { min_rounds: 3, max_rounds: 3, budget: Duration::ZERO, goal: None, seed: 1 };
@@ -35,7 +35,7 @@ fn each_strategy_has_a_row_and_its_pieces() {
         let areas: Vec<_> =
             row.timeline.lanes[0].pieces.iter().map(|p| (p.rect.x, p.rect.y)).collect();
         assert_eq!(areas, [(0, 0), (2, 0), (4, 0), (0, 2), (2, 2), (4, 2)]);
-        // Whatever the times: the second thread has none of the work.
+        // Whatever the times, the second thread has no work.
         assert_eq!(row.timeline.lanes.len(), 1);
         assert_eq!(row.lost_ns, 2.0 * row.wall_ns - explanation.reference_ns);
     }
@@ -50,18 +50,18 @@ fn a_strategy_without_threads_has_one_whatever_it_is_given() {
     assert_eq!(row.lost_ns, row.wall_ns - explanation.reference_ns);
 }
 
-/// Catches figures of a strategy that draws something else, or nothing.
+/// Catches figures of a strategy that gives another image, or none.
 #[test]
-fn what_is_wrong_is_not_explained() {
+fn a_wrong_strategy_is_not_explained() {
     let wrong = explain(&[&ALL, &ALL_BUT_ONE]).expect_err("another image");
     assert!(matches!(wrong, ExplainError::Different { strategy: "all-but-one" }), "{wrong}");
     let failed = explain(&[&REFUSES]).expect_err("no image");
     assert_eq!(failed.to_string(), "refuses: unavailable here: not today");
 }
 
-/// Catches records of all pixels that are kept though nobody sees them, or with room for more.
+/// Catches pieces that are kept although they are not shown, or with memory for more.
 #[test]
-fn only_what_is_shown_is_kept() {
+fn only_shown_pieces_are_kept() {
     let protocol =
         Protocol { min_rounds: 1, max_rounds: 1, budget: Duration::ZERO, goal: None, seed: 1 };
     let reference = &ALL;
@@ -94,7 +94,7 @@ fn a_long_gap_is_longer_than_999_of_1000() {
     // The first has no gap before it.
     let pieces = std::iter::once(50_000).chain((1..=2000).rev()).map(&mut after).collect();
     let timeline = Timeline { wall_ns: 0, lanes: vec![TimelineLane { name: None, pieces }] };
-    // Of 2000 gaps two are as long as that or longer.
+    // Two of the 2000 gaps are as long as that or longer.
     assert_eq!(long_gap_ns(&timeline), 1999.0);
     assert_eq!(long_gap_ns(&Timeline::default()), 0.0);
 }

@@ -1,21 +1,21 @@
-//! Where a measured curve crosses a line, read between its points.
+//! Finds where a measured curve crosses a level, by interpolation between its points.
 
-/// The smallest `work` of the `points` (work, efficiency), ever larger ones, from which on the
-/// efficiency stays at `share` of the largest one or above. Between points efficiency is linear in
-/// the logarithm of the work. `None` if the first point is above already.
+/// Returns the smallest work from which on the efficiency stays at `share` of the largest one or
+/// above; `None` if it does at the first point. The `points` are (work, efficiency) in ascending
+/// order. Between them the efficiency is linear in the logarithm of the work.
 pub(super) fn metg(points: &[(f64, f64)], share: f64) -> Option<f64> {
     let peak = points.iter().map(|point| point.1).fold(0.0, f64::max);
     last_crossing(points, share * peak).filter(|work| *work > points[0].0)
 }
 
-/// The smallest `side` of the `points` (side, speed-up), ever larger ones, from which on the
-/// speed-up stays above 1. `None` if it is not above at the last point.
+/// Returns the smallest side from which on the speed-up stays above 1; `None` if it is not above 1
+/// at the last point. The `points` are (side, speed-up) in ascending order.
 pub(super) fn break_even(points: &[(f64, f64)]) -> Option<f64> {
     last_crossing(points, 1.0)
 }
 
-/// From where on a curve stays at `level` or above: its first place if it always does, `None` if it
-/// does not at the end.
+/// Returns the place from which on a curve stays at `level` or above: its first place if it always
+/// does, `None` if it does not at the end.
 fn last_crossing(points: &[(f64, f64)], level: f64) -> Option<f64> {
     let from = points.iter().rposition(|point| point.1 < level).map_or(0, |below| below + 1);
     let &(right, above) = points.get(from)?;

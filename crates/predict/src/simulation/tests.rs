@@ -2,7 +2,7 @@ use super::*;
 use proptest::prelude::*;
 use rayweave_contract::{Granularity, Scheduling};
 
-/// The kind of piece is the caller's matter: it shows in the costs.
+/// Returns a policy. Its granularity has no influence on the simulation but by the costs.
 fn policy(scheduling: Scheduling, output: Output) -> Policy {
     Policy { granularity: Granularity::Row, scheduling, output }
 }
@@ -26,11 +26,11 @@ const ALL: [Scheduling; 6] = [
     Scheduling::RecursiveSplit,
 ];
 
-/// One heavy piece at the end, as the last row of an image: who gets it late makes all wait.
+/// Pieces with a heavy one at the end, as an expensive last row.
 const PIECES: [f64; 8] = [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 9.0];
 
 #[test]
-fn equal_shares_wait_for_the_heaviest() {
+fn static_blocks_wait_for_the_heaviest() {
     assert_eq!(
         free(Scheduling::Static, 2, &PIECES),
         SimulatedRender { time: 12.0, computed: vec![4.0, 12.0] }
@@ -41,7 +41,7 @@ fn equal_shares_wait_for_the_heaviest() {
 }
 
 #[test]
-fn a_shared_counter_gives_to_who_is_free() {
+fn a_shared_counter_serves_free_threads() {
     // Both compute one by one until 3; thread 0 then takes the last but one, thread 1 the last.
     assert_eq!(
         free(ONE_BY_ONE, 2, &PIECES),
@@ -69,11 +69,11 @@ fn guided_takes_ever_fewer() {
 }
 
 #[test]
-fn the_idle_steal_half() {
+fn an_idle_thread_steals_half() {
     // Shares of 4. At 4 thread 0 is idle; thread 1 then begins its fourth piece, so there is
     // nothing left to steal.
     assert_eq!(free(Scheduling::WorkStealing, 2, &PIECES).computed, [4.0, 12.0]);
-    // All of the load is in the second share: thread 0 takes 2 of the 4 before thread 1 begins.
+    // All of the load is in the second block: thread 0 takes 2 of the 4 before thread 1 begins.
     let late = [0.0, 0.0, 0.0, 0.0, 5.0, 5.0, 5.0, 5.0];
     assert_eq!(
         free(Scheduling::WorkStealing, 2, &late),
@@ -114,12 +114,11 @@ fn threads_begin_one_after_the_other() {
 }
 
 #[test]
-fn a_lock_is_had_by_one_at_a_time() {
+fn a_lock_serves_one_thread_at_a_time() {
     let locked = policy(Scheduling::Static, Output::Mutex);
     let overheads =
         |hold, handover| Overheads { deliver: Access { hold, handover }, ..Overheads::default() };
-    // Both come at 1, 2 ...: thread 1 always waits for thread 0, and is one hold later from then
-    // on.
+    // Both ask at 1, 2 ...: thread 1 waits for thread 0, and is one hold later from then on.
     assert_eq!(
         simulate(locked, 2, &[1.0; 4], &overheads(0.25, 0.0)).time,
         1.0 + 0.25 + 0.25 + 1.0 + 0.25
@@ -127,17 +126,13 @@ fn a_lock_is_had_by_one_at_a_time() {
     // Where the lock is all there is, threads do not help: 8 pieces one after the other.
     let pieces = [0.0; 8];
     assert_eq!(simulate(locked, 4, &pieces, &overheads(1.0, 0.0)).time, 8.0);
-    assert_eq!(
-        simulate(locked, 1, &pieces, &overheads(1.0, 3.0)).time,
-        8.0,
-        "nobody to hand it over"
-    );
-    // Each of the accesses but the first is a handover: threads take turns.
+    assert_eq!(simulate(locked, 1, &pieces, &overheads(1.0, 3.0)).time, 8.0, "no handover");
+    // Each access but the first is a handover, because the threads alternate.
     assert_eq!(simulate(locked, 4, &pieces, &overheads(1.0, 3.0)).time, 8.0 + 7.0 * 3.0);
 }
 
 #[test]
-fn a_counter_is_had_by_one_at_a_time() {
+fn a_counter_serves_one_thread_at_a_time() {
     let overheads = Overheads { take: Access { hold: 1.0, handover: 1.0 }, ..Overheads::default() };
     let run = |scheduling| simulate(in_place(scheduling), 2, &[0.0; 4], &overheads).time;
     assert_eq!(run(ONE_BY_ONE), 1.0 + 2.0 + 2.0 + 2.0);
@@ -146,18 +141,18 @@ fn a_counter_is_had_by_one_at_a_time() {
 }
 
 #[test]
-fn who_sends_does_not_wait() {
+fn a_sender_does_not_wait() {
     let sent = policy(Scheduling::Static, Output::Channel);
     let overheads =
         Overheads { deliver: Access { hold: 3.0, handover: 0.0 }, ..Overheads::default() };
-    // The owner receives at 1, 4, 7 and 10: the threads have long ended.
+    // The owner receives at 1, 4, 7 and 10, when the threads have ended.
     assert_eq!(simulate(sent, 2, &[1.0; 4], &overheads).time, 1.0 + 4.0 * 3.0);
     // Few and large: only the last receipt is added.
     assert_eq!(simulate(sent, 2, &[10.0; 4], &overheads).time, 20.0 + 2.0 * 3.0);
 }
 
 #[test]
-fn no_pieces_take_the_start_alone() {
+fn no_pieces_take_only_the_start() {
     let overheads = Overheads { start: 7.0, ..Overheads::default() };
     for scheduling in ALL {
         assert_eq!(
@@ -170,8 +165,8 @@ fn no_pieces_take_the_start_alone() {
 proptest! {
     #![proptest_config(ProptestConfig { rng_seed: proptest::test_runner::RngSeed::Fixed(1), ..ProptestConfig::default() })]
 
-    /// Catches pieces that are lost or computed twice, and speed out of nothing. Whole numbers add
-    /// up exactly.
+    /// Catches pieces that are lost or computed twice, and a speed-up above the number of threads.
+    /// Whole numbers add up exactly.
     #[test]
     fn work_is_conserved_and_n_threads_are_at_most_n_times_as_fast(
         pieces in prop::collection::vec(0_u32..1000, 1..200),
@@ -194,7 +189,7 @@ proptest! {
     /// A list scheduler is never worse than this (Graham, "Bounds on multiprocessing timing
     /// anomalies", 1969). So more threads may be slower, but by no more than it allows.
     #[test]
-    fn who_is_free_takes_the_next_within_grahams_bound(
+    fn a_list_scheduler_is_within_grahams_bound(
         pieces in prop::collection::vec(0_u32..1000, 1..200),
         threads in 1_usize..40,
     ) {
