@@ -229,7 +229,7 @@ fn row(
         wall_ns,
         lost_ns: threads as f64 * wall_ns - series[0].shortest_ns(),
         lost_time: LostTime::new(&sequential, &on_one, &on_all),
-        recorded: over_plain.unwrap_or(Interval { median: 1.0, low: 1.0, high: 1.0 }),
+        recorded: over_plain.unwrap_or(Interval::exactly(1.0)),
         long_gap_ns: series[alone].quickest.as_ref().map_or(0.0, |quickest| quickest.long_gap_ns),
         timeline: series[recorded]
             .quickest

@@ -111,14 +111,11 @@ impl fmt::Display for Fault {
         match self {
             Self::Different(difference) => difference.fmt(f),
             Self::NotOnce { pixels, x, y, computations } => {
-                write!(
-                    f,
-                    "pixels not computed exactly once: {pixels}, first ({x}, {y}), computed "
-                )?;
+                write!(f, "pixels not computed exactly once: {pixels}, first ({x}, {y}), ")?;
                 match computations.as_slice() {
-                    [] => write!(f, "by nobody"),
+                    [] => write!(f, "never computed"),
                     several => {
-                        write!(f, "{} times", several.len())?;
+                        write!(f, "computed {} times", several.len())?;
                         several.iter().try_for_each(|computation| write!(f, ", {computation}"))
                     }
                 }
@@ -145,7 +142,7 @@ impl fmt::Display for ImageDifference {
         }
         match computation {
             Some(computation) => write!(f, ", computed in {computation}"),
-            None => write!(f, ", computed by nobody"),
+            None => write!(f, ", never computed"),
         }
     }
 }
@@ -202,13 +199,13 @@ mod tests {
         };
         assert_eq!(
             finding.to_string(),
-            "tile-queue, 2 threads, room 97x61, tiles of 8, rendered again: differing pixels: 32, first \
-             (9, 17), expected [0.1, 1.0, -0.0], found [0.10000001, NaN(0x7fc00001), 0.0], computed in \
-             tile 8x4 at (8, 16) by thread 1 (\"tile-queue 0\")"
+            "tile-queue, 2 threads, room 97x61, tiles of 8, rendered again: differing pixels: 32, \
+             first (9, 17), expected [0.1, 1.0, -0.0], found [0.10000001, NaN(0x7fc00001), 0.0], \
+             computed in tile 8x4 at (8, 16) by thread 1 (\"tile-queue 0\")"
         );
         finding.fault =
             Fault::Different(ImageDifference { found: None, computation: None, ..difference });
-        assert!(finding.to_string().ends_with("found never written, computed by nobody"));
+        assert!(finding.to_string().ends_with("found never written, never computed"));
     }
 
     #[test]
@@ -222,6 +219,6 @@ mod tests {
         let once = |computations| Fault::NotOnce { pixels: 3, x: 0, y: 1, computations };
         let text = finding(once(vec![computation(), computation()]));
         assert!(text.contains("once: 3, first (0, 1), computed 2 times, tile 8x4 at"), "{text}");
-        assert!(finding(once(Vec::new())).ends_with("computed by nobody"));
+        assert!(finding(once(Vec::new())).ends_with("first (0, 1), never computed"));
     }
 }

@@ -257,10 +257,7 @@ mod tests {
 
     #[test]
     fn the_slowdown_of_the_most_threads_measured_is_that_of_all_more() {
-        let at = |threads, median| Slowdown {
-            threads,
-            factor: Interval { median, low: median, high: median },
-        };
+        let at = |threads, median| Slowdown { threads, factor: Interval::exactly(median) };
         let slowdowns = [at(2, 1.25), at(4, 1.5)];
         let expected = [(1, 1.0), (2, 1.25), (3, 1.25), (4, 1.5), (1024, 1.5)];
         for (threads, factor) in expected {

@@ -143,7 +143,8 @@ mod tests {
 
     #[test]
     fn cpuinfo() {
-        let text = "processor\t: 0\nmodel name\t: Some CPU: 2 GHz\n\nprocessor\t: 1\nmodel name\t: other\n";
+        let text = "processor\t: 0\nmodel name\t: Some CPU: 2 GHz\n\n\
+                    processor\t: 1\nmodel name\t: other\n";
         assert_eq!(cpu_model(text), Some("Some CPU: 2 GHz"));
         assert_eq!(logical_cores(text), Some(2));
         assert_eq!((cpu_model(""), logical_cores("")), (None, None));

@@ -53,7 +53,7 @@ impl Sample {
 /// The measurement of a strategy with a number of threads. Each list of samples has one value a
 /// round, of verified renderings only, or is empty if the value is unknown. A figure is `None` if
 /// the strategy failed or gave another image, and for all strategies if the reference did.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Measurement {
     /// The strategy's name.
     pub strategy: String,
@@ -131,22 +131,7 @@ impl Measurement {
             starts_threads: starts_threads.to_string(),
             // Until the warm-up has shown otherwise.
             identical: true,
-            digest: None,
-            error: None,
-            median_ns: None,
-            speedup: None,
-            efficiency: None,
-            serial_fraction: None,
-            prepare_ns: None,
-            cold_ns: None,
-            cold_speedup: None,
-            cpu_ns: None,
-            primary_rays: None,
-            redundant_rays: None,
-            samples_ns: Vec::new(),
-            prepare_samples_ns: Vec::new(),
-            cold_samples_ns: Vec::new(),
-            cpu_samples_ns: Vec::new(),
+            ..Self::default()
         }
     }
 

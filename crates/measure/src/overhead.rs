@@ -222,7 +222,7 @@ impl Overhead<'_> {
         let is_band = strategy.policy().granularity == Granularity::Band;
         let threads = self.threads_of(strategy).get();
         let interval = |of: fn(&Round) -> f64| {
-            let none = Interval { median: 0.0, low: 0.0, high: 0.0 };
+            let none = Interval::exactly(0.0);
             median_interval(&samples.of(of)).unwrap_or(none)
         };
         let tasks_a_piece = if is_band { f64::from(TASKS) / threads as f64 } else { 1.0 };

@@ -25,6 +25,12 @@ pub struct Interval {
 }
 
 impl Interval {
+    /// Returns the interval that is a single value.
+    #[must_use]
+    pub fn exactly(value: f64) -> Self {
+        Self { median: value, low: value, high: value }
+    }
+
     /// Returns whether the interval contains `value`; its ends belong to it.
     #[must_use]
     pub fn contains(&self, value: f64) -> bool {
@@ -259,7 +265,7 @@ mod tests {
     #[test]
     fn interval_of_equal_values_is_that_value() {
         let third = 1.0 / 3.0;
-        let expected = Interval { median: third, low: third, high: third };
+        let expected = Interval::exactly(third);
         assert_eq!(median_interval(&[third; 4]), Some(expected));
         assert_eq!(median_interval(&[third]), Some(expected));
         assert_eq!(median_interval(&[]), None);

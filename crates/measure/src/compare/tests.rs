@@ -136,7 +136,7 @@ fn a_speedup_is_the_median_of_the_ratios_within_a_round() {
     });
     let comparison = run(protocol(5, 5, u64::MAX), &mut executor);
     let [_, control, pool, queue] = &comparison.rows[..] else { panic!("four rows") };
-    let exactly = |ratio| Some(Interval { median: ratio, low: ratio, high: ratio });
+    let exactly = |ratio| Some(Interval::exactly(ratio));
     assert_eq!((pool.speedup, control.speedup), (exactly(2.0), exactly(1.0)));
     assert_eq!((pool.efficiency, pool.serial_fraction), (Some(1.0), Some(0.0)));
     assert_eq!((pool.median_ns, pool.prepare_ns), (Some(2000), Some(7)));
@@ -180,7 +180,7 @@ fn both_images_of_a_fresh_process_are_verified() {
     let comparison = run(protocol(6, 6, u64::MAX), &mut executor);
     let [_, _, pool, queue] = &comparison.rows[..] else { panic!("four rows") };
     assert_eq!((pool.median_ns, pool.cpu_ns, pool.cold_ns), (Some(5), Some(10), Some(15)));
-    assert_eq!(pool.cold_speedup, Some(Interval { median: 2.0, low: 2.0, high: 2.0 }));
+    assert_eq!(pool.cold_speedup, Some(Interval::exactly(2.0)));
     assert!(!queue.identical && queue.samples_ns.len() == 2);
     assert_eq!((queue.digest, &queue.error), (Some(image(0.5)), &None));
 

@@ -77,7 +77,7 @@ fn times_of_one_over_times_of_another_are_ratios_within_a_round() {
         |name, call| right(3 * slow(name, call, 2)),
     );
     let [a, b] = [a, b].map(|mut comparison| comparison.rows.swap_remove(0).samples_ns);
-    assert_eq!(ratio_interval(&b, &a), Some(Interval { median: 3.0, low: 3.0, high: 3.0 }));
+    assert_eq!(ratio_interval(&b, &a), Some(Interval::exactly(3.0)));
 }
 
 #[test]

@@ -14,14 +14,23 @@ static REFUSES: FakeStrategy = FakeStrategy::new("refuses", Threads::PerRender, 
     Err(StrategyError::Unavailable { strategy: "refuses", reason: "not today" })
 });
 
-/// Explains `strategies` with two threads each, in three rounds.
+const EXPERIMENT: ExplainExperiment<'_> = ExplainExperiment {
+    work: &Grey,
+    size: (5, 4),
+    tile: SIDE,
+    reference: &ALL,
+    protocol: Protocol {
+        min_rounds: 3,
+        max_rounds: 3,
+        budget: Duration::ZERO,
+        goal: None,
+        seed: 1,
+    },
+};
+
+/// Explains `strategies` with two threads each.
 fn explain(strategies: &[&dyn Strategy]) -> Result<Explanation, ExplainError> {
-    let protocol =
-        Protocol { min_rounds: 3, max_rounds: 3, budget: Duration::ZERO, goal: None, seed: 1 };
-    let reference = &ALL;
-    let experiment =
-        ExplainExperiment { work: &Grey, size: (5, 4), tile: SIDE, reference, protocol };
-    experiment.run(strategies, NonZeroUsize::new(2).expect("not 0"), |_| ())
+    EXPERIMENT.run(strategies, NonZeroUsize::new(2).expect("not 0"), |_| ())
 }
 
 #[test]
@@ -62,17 +71,12 @@ fn a_wrong_strategy_is_not_explained() {
 /// Catches pieces that are kept although they are not shown, or with memory for more.
 #[test]
 fn only_shown_pieces_are_kept() {
-    let protocol =
-        Protocol { min_rounds: 1, max_rounds: 1, budget: Duration::ZERO, goal: None, seed: 1 };
-    let reference = &ALL;
-    let experiment =
-        ExplainExperiment { work: &Grey, size: (5, 4), tile: SIDE, reference, protocol };
     let free = RecordingCost { inside_ns: 0.0, outside_ns: 0.0 };
     let kept = |recording| {
-        let mut series = Series::new(reference, NonZeroUsize::MIN, recording);
+        let mut series = Series::new(&ALL, NonZeroUsize::MIN, recording);
         let mut image = Image::new(5, 4).expect("an image");
         for counts in [false, true] {
-            series.render(&experiment, free, &mut image, counts).expect("drawn");
+            series.render(&EXPERIMENT, free, &mut image, counts).expect("drawn");
         }
         series.quickest.map(|quickest| quickest.timeline)
     };

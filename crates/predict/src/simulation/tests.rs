@@ -1,5 +1,6 @@
 use super::*;
 use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 use rayweave_contract::{Granularity, Scheduling};
 
 /// Returns a policy. Its granularity has no influence on the simulation but by the costs.
@@ -163,7 +164,7 @@ fn no_pieces_take_only_the_start() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { rng_seed: proptest::test_runner::RngSeed::Fixed(1), ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { rng_seed: RngSeed::Fixed(1), ..Default::default() })]
 
     /// Catches pieces that are lost or computed twice, and a speed-up above the number of threads.
     /// Whole numbers add up exactly.
@@ -176,13 +177,15 @@ proptest! {
     ) {
         let pieces: Vec<f64> = pieces.into_iter().map(f64::from).collect();
         let total: f64 = pieces.iter().sum();
-        let access = Access { hold: f64::from(overhead), handover: f64::from(overhead) };
-        let overheads = Overheads { piece: f64::from(overhead), take: access, deliver: access, ..Overheads::default() };
+        let piece = f64::from(overhead);
+        let access = Access { hold: piece, handover: piece };
+        let overheads =
+            Overheads { piece, take: access, deliver: access, ..Overheads::default() };
         for scheduling in ALL {
             let run = simulate(policy(scheduling, output), threads, &pieces, &overheads);
             prop_assert_eq!(run.computed.iter().sum::<f64>(), total, "{:?}", scheduling);
             prop_assert!(run.time >= run.computed.iter().copied().fold(0.0, f64::max));
-            prop_assert!(run.time * threads as f64 >= total + f64::from(overhead) * pieces.len() as f64);
+            prop_assert!(run.time * threads as f64 >= total + piece * pieces.len() as f64);
         }
     }
 
@@ -194,12 +197,13 @@ proptest! {
         threads in 1_usize..40,
     ) {
         let pieces: Vec<f64> = pieces.into_iter().map(f64::from).collect();
-        let (total, longest) = (pieces.iter().sum::<f64>(), pieces.iter().copied().fold(0.0, f64::max));
+        let total: f64 = pieces.iter().sum();
+        let longest = pieces.iter().copied().fold(0.0, f64::max);
         let inverse = 1.0 / threads as f64;
         let bound = total * inverse + longest * (1.0 - inverse);
         for scheduling in [ONE_BY_ONE, Scheduling::WorkStealing] {
             let time = free(scheduling, threads, &pieces).time;
-            prop_assert!(time <= bound * (1.0 + 1e-12), "{:?}: {} is above {}", scheduling, time, bound);
+            prop_assert!(time <= bound * (1.0 + 1e-12), "{scheduling:?}: {time} is above {bound}");
         }
     }
 }
