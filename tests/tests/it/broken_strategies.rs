@@ -260,7 +260,7 @@ fn computes_with_another_number_of_threads() {
         let expected: Vec<_> =
             found.iter().map(|&found| Fault::Threads { expected: 2, found }).collect();
         assert_eq!(faults(&findings), expected.iter().collect::<Vec<_>>(), "case {i}");
-        let place = findings[0].picture.as_ref().map(|picture| picture.scene.as_str());
+        let place = findings[0].render.as_ref().map(|render| render.scene.as_str());
         match i {
             2 => assert_eq!(
                 findings[0].to_string(),
