@@ -6,17 +6,17 @@
 
 mod commands;
 mod files;
+mod image_file;
 mod input;
 mod interrupt;
 mod options;
-mod picture;
 mod progress;
 mod subprocess;
 mod with_noise;
 
 use clap::{Parser, Subcommand};
 use commands::{
-    check, compare, error, explain, intersect, overhead, predict, render, sample, strategies,
+    check, compare, explain, intersect, overhead, predict, render, sample, strategies, tradeoff,
 };
 use std::io::{self, Write};
 use std::process::ExitCode;
@@ -49,8 +49,9 @@ enum Command {
     /// One sample of a comparison
     #[command(hide = true)]
     Sample(sample::Arguments),
-    /// Hold the speed of every setting against its error
-    Error(error::Arguments),
+    /// Measure speed and error of every setting, and say which one to choose
+    #[command(alias = "error")]
+    Tradeoff(tradeoff::Arguments),
     /// Say why a strategy loses: where the time of its threads goes
     Explain(explain::Arguments),
     /// Send hard cases through the kernel that renders, results as JSON lines
@@ -80,7 +81,7 @@ fn main() -> ExitCode {
         Some(Command::Overhead(arguments)) => overhead::run(&arguments),
         Some(Command::Predict(arguments)) => predict::run(&arguments),
         Some(Command::Sample(arguments)) => sample::run(&arguments),
-        Some(Command::Error(arguments)) => error::run(&arguments),
+        Some(Command::Tradeoff(arguments)) => tradeoff::run(&arguments),
         Some(Command::Explain(arguments)) => explain::run(&arguments),
         Some(Command::Intersect(arguments)) => intersect::run(&arguments),
         None => compare::run(None, &cli.compare),

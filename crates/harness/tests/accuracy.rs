@@ -1,4 +1,4 @@
-//! `rayweave error` and `rayweave intersect`, as their users meet them.
+//! `rayweave tradeoff` and `rayweave intersect`, as their users meet them.
 
 mod program;
 
@@ -8,10 +8,10 @@ use std::fs;
 
 /// Catches a setting left out, a format that others cannot read, a picture that is not written.
 #[test]
-fn error_writes_every_setting() {
+fn tradeoff_writes_every_setting() {
     let folder = folder();
     let arguments =
-        "error --size 6x4 --target-psnr 30 --json a.json --csv a.csv --svg a.svg --pictures p";
+        "tradeoff --size 6x4 --target-psnr 30 --json a.json --csv a.csv --svg a.svg --pictures p";
     let table = rayweave(folder.path(), arguments).expect_success();
     let object = json(&folder.path().join("a.json"));
     assert_eq!((&object["schema"], &object["width"]), (&Value::from(1), &Value::from(6)));
@@ -46,12 +46,13 @@ fn error_writes_every_setting() {
 
 /// Catches depths or kinds of primitives that are tried though the scene has none of it.
 #[test]
-fn error_tries_what_the_scene_has() {
+fn tradeoff_tries_what_the_scene_has() {
     let folder = folder();
     let plain = "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\nup = [0, 1, 0]\nfocal_length = 1\n\
                  screen_width = 1\n[material.a]\ncolor = [1, 1, 1]\n[[sphere]]\ncenter = [0, 0, 0]\n\
                  radius = 1\nmaterial = \"a\"\n";
     fs::write(folder.path().join("ball.toml"), plain).expect("written");
+    // `error` is the command's old name, which still works.
     let table =
         rayweave(folder.path(), "error ball.toml --size 5x5 --json a.json").expect_success();
     let object = json(&folder.path().join("a.json"));
@@ -77,12 +78,12 @@ fn malformed_cases_are_named_by_their_line() {
     assert!(message.starts_with("error: none.jsonl: cannot be read"), "{message}");
     // The last two would write over what they are to read.
     for arguments in [
-        "error --target-psnr NaN",
-        "error --size 3",
-        "error --json a --csv a",
-        "error no.toml --pictures p",
+        "tradeoff --target-psnr NaN",
+        "tradeoff --size 3",
+        "tradeoff --json a --csv a",
+        "tradeoff no.toml --pictures p",
         "intersect bad.jsonl --json ./bad.jsonl",
-        "error bad.jsonl --svg bad.jsonl",
+        "tradeoff bad.jsonl --svg bad.jsonl",
     ] {
         rayweave(folder.path(), arguments).expect_refusal();
     }

@@ -89,6 +89,21 @@ fn precision_is_chosen_by_the_scene_or_by_hand() {
     assert_ne!(digest("f64"), digest("f32"));
 }
 
+/// Catches an old name that no longer works, or that the help lists.
+#[test]
+fn old_names_still_work() {
+    let folder = folder();
+    for option in ["--stats", "--explain"] {
+        let text = rayweave(folder.path(), &format!("render --size 4x4 {option} -o a.ppm"));
+        let text = text.expect_success();
+        assert!(text.contains("packets: ") && text.contains("prepared in "), "{option}: {text}");
+    }
+    let help = rayweave(folder.path(), "--help").expect_success();
+    assert!(help.contains("\n  tradeoff ") && !help.contains("\n  error "), "{help}");
+    let help = rayweave(folder.path(), "render --help").expect_success();
+    assert!(help.contains("--stats") && !help.contains("--explain"), "{help}");
+}
+
 #[test]
 fn check_holds_and_says_so() {
     let folder = folder();

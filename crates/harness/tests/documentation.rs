@@ -41,10 +41,10 @@ fn commands(document: &str) -> Vec<String> {
 /// Small pictures and short times do: what is tested is that the command is understood and
 /// succeeds.
 fn small(arguments: &str) -> String {
-    let takes_size = ["render", "check", "compare", "error", "explain", "predict", "-"]
+    let takes_size = ["render", "check", "compare", "tradeoff", "explain", "predict", "-"]
         .iter()
         .any(|word| arguments.starts_with(word));
-    if arguments.starts_with("error") {
+    if arguments.starts_with("tradeoff") {
         // Each of its pictures takes thousands of rays a pixel.
         return format!("{} --size 4x3", arguments.replace("--size 60x60", ""));
     }

@@ -1,11 +1,11 @@
 //! `rayweave explain`: why a strategy loses what it loses.
 
 use crate::files::{PendingFile, distinct_files};
+use crate::image_file::ImageFormat;
 use crate::input::Input;
 use crate::options::{
     SceneOptions, TileOption, all_threads, distinct, parse_seconds, parse_threads, strategy_parser,
 };
-use crate::picture::Format;
 use crate::with_noise::with_noise;
 use crate::{Outcome, print};
 use clap::Args;
@@ -144,7 +144,7 @@ fn write_pictures(files: Vec<PictureFiles>, report: &Report<'_>) -> Result<(), S
         files.timeline.finish(report.timeline(row)?.as_bytes())?;
         files
             .owners
-            .finish(&Format::Png.encode(&report.owners(row).map_err(|e| e.to_string())?)?)?;
+            .finish(&ImageFormat::Png.encode(&report.owners(row).map_err(|e| e.to_string())?)?)?;
         files.cost.finish(report.cost(row)?.as_bytes())?;
     }
     Ok(())

@@ -2,7 +2,6 @@
 
 pub mod check;
 pub mod compare;
-pub mod error;
 pub mod explain;
 pub mod intersect;
 pub mod overhead;
@@ -10,3 +9,4 @@ pub mod predict;
 pub mod render;
 pub mod sample;
 pub mod strategies;
+pub mod tradeoff;

@@ -1,9 +1,9 @@
 //! `rayweave render`: a picture.
 
 use crate::files::{PendingFile, distinct_files};
+use crate::image_file::ImageFormat;
 use crate::input::Input;
 use crate::options::{SceneOptions, TileOption, all_threads, parse_threads, strategy_parser};
-use crate::picture::Format;
 use crate::progress::ProgressWork;
 use crate::{Outcome, print};
 use clap::Args;
@@ -29,9 +29,9 @@ pub struct Arguments {
     threads: Option<NonZeroUsize>,
     #[command(flatten)]
     tile: TileOption,
-    /// Say what of the tracer the scene uses, and how long it took to prepare
-    #[arg(long)]
-    explain: bool,
+    /// Print which parts of the tracer the scene uses and how long it took to prepare
+    #[arg(long, alias = "explain")]
+    stats: bool,
     #[command(flatten)]
     options: SceneOptions,
 }
@@ -40,7 +40,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let path =
         arguments.output.clone().unwrap_or_else(|| default_output(arguments.scene.as_deref()));
     distinct_files(&[&arguments.scene, &Some(path.clone())])?;
-    let format = Format::of(&path)?;
+    let format = ImageFormat::of(&path)?;
     let file = PendingFile::create(&path)?;
     let input = Input::load(arguments.scene.as_deref(), &arguments.options)?;
 
@@ -64,9 +64,9 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     result.map_err(|e| e.to_string())?;
 
     file.finish(&format.encode(&picture)?)?;
-    let explanation = if arguments.explain { explain(&input, preparing)? } else { String::new() };
+    let stats = if arguments.stats { stats(&input, preparing)? } else { String::new() };
     print(&format!(
-        "{}\n{}, threads: {computing}, {seconds:.6} s, digest {}\n{explanation}{}\nwritten to {}\n",
+        "{}\n{}, threads: {computing}, {seconds:.6} s, digest {}\n{stats}{}\nwritten to {}\n",
         input.describe(),
         strategy.name(),
         picture.digest().short(),
@@ -77,7 +77,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
 }
 
 /// What of the tracer the scene uses; each line ends.
-fn explain(input: &Input, preparing: f64) -> Result<String, String> {
+fn stats(input: &Input, preparing: f64) -> Result<String, String> {
     let analysis =
         Analysis::of(&input.scene, &input.execution).map_err(|e| format!("{}: {e}", input.name))?;
     let Execution { lanes, share_samples, .. } = input.execution;

@@ -10,7 +10,7 @@ use std::path::Path;
 
 /// A file format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
+pub enum ImageFormat {
     /// 8 bits a channel.
     Png,
     /// 8 bits a channel, uncompressed.
@@ -19,7 +19,7 @@ pub enum Format {
     Exr,
 }
 
-impl Format {
+impl ImageFormat {
     /// By the file's extension.
     pub fn of(path: &Path) -> Result<Self, String> {
         let extension =
@@ -81,7 +81,7 @@ mod tests {
 
     #[test]
     fn a_ppm_is_a_header_and_the_bytes() {
-        let file = Format::Ppm.encode(&picture()).expect("encodes");
+        let file = ImageFormat::Ppm.encode(&picture()).expect("encodes");
         assert_eq!(file, b"P6\n2 1 255\n\x80\x00\xff\x1a\x00\xfe");
     }
 
@@ -89,7 +89,7 @@ mod tests {
     fn an_exr_keeps_every_bit() {
         let mut picture = picture();
         picture.pixels_mut()[1] = [1e-30, 3.5, 0.1];
-        let file = Format::Exr.encode(&picture).expect("encodes");
+        let file = ImageFormat::Exr.encode(&picture).expect("encodes");
         let decoded = image::load_from_memory(&file).expect("decodes").into_rgb32f();
         let bits = |floats: &[f32]| floats.iter().map(|c| c.to_bits()).collect::<Vec<_>>();
         assert_eq!(bits(decoded.as_raw()), bits(picture.pixels().as_flattened()));
@@ -97,8 +97,8 @@ mod tests {
 
     #[test]
     fn the_extension_decides() {
-        assert_eq!(Format::of(Path::new("a.b/c.PNG")), Ok(Format::Png));
-        assert!(Format::of(Path::new("png")).is_err());
-        assert!(Format::of(Path::new("a.jpg")).is_err());
+        assert_eq!(ImageFormat::of(Path::new("a.b/c.PNG")), Ok(ImageFormat::Png));
+        assert!(ImageFormat::of(Path::new("png")).is_err());
+        assert!(ImageFormat::of(Path::new("a.jpg")).is_err());
     }
 }

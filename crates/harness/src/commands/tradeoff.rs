@@ -1,9 +1,9 @@
-//! `rayweave error`: speed against error.
+//! `rayweave tradeoff`: speed against error.
 
 use crate::files::{PendingFile, distinct_files};
+use crate::image_file::ImageFormat;
 use crate::input;
 use crate::options::{all_threads, parse_psnr, parse_size};
-use crate::picture::Format;
 use crate::progress::Share;
 use crate::{Outcome, print};
 use clap::Args;
@@ -103,7 +103,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     csv.map_or(Ok(()), |file| file.finish(report.csv().as_bytes()))?;
     svg.map_or(Ok(()), |file| file.finish(report.svg()?.as_bytes()))?;
     if let (Some(folder), Some(file)) = (&arguments.pictures, reference_file) {
-        file.finish(&Format::Png.encode(&study.reference.image)?)?;
+        file.finish(&ImageFormat::Png.encode(&study.reference.image)?)?;
         write_pictures(folder, &scene, &study, size)?;
     }
     Ok(if study.repeatable { Outcome::Passed } else { Outcome::Failed })
@@ -159,7 +159,7 @@ fn write_pictures(
     size: (u32, u32),
 ) -> Result<(), String> {
     let write = |name: &str, picture: &Image| {
-        PendingFile::create(&folder.join(name))?.finish(&Format::Png.encode(picture)?)
+        PendingFile::create(&folder.join(name))?.finish(&ImageFormat::Png.encode(picture)?)
     };
     let truth = &study.reference.image;
     let own = study.report_row();
