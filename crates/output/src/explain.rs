@@ -18,9 +18,11 @@ use rayweave_measure::timeline::{Timeline, TimelineLane};
 use rayweave_measure::{Machine, Noise};
 use serde::Serialize;
 
+use ExplanationView as Report;
+
 /// An explanation with everything that is needed to read it.
 #[derive(Clone, Copy)]
-pub struct Report<'a> {
+pub struct ExplanationView<'a> {
     /// The scene's name.
     pub scene: &'a str,
     /// Of the picture, in pixels.
@@ -37,7 +39,7 @@ pub struct Report<'a> {
     pub noise: &'a Noise,
 }
 
-impl Report<'_> {
+impl ExplanationView<'_> {
     /// For people: of each strategy where its thread-time goes, what each thread does, and what
     /// helps. Without a newline at the end.
     #[must_use]

@@ -8,9 +8,11 @@ mod tests;
 
 use rayweave_measure::{Forecast, Machine, Noise};
 
+use ForecastView as Report;
+
 /// A forecast with everything that is needed to read it.
 #[derive(Clone, Copy, Debug)]
-pub struct Report<'a> {
+pub struct ForecastView<'a> {
     /// The scene's name.
     pub scene: &'a str,
     /// Of the picture, in pixels.
@@ -37,7 +39,7 @@ const ASSUMPTIONS: [&str; 5] = [
      is in that, so many threads start faster",
 ];
 
-impl Report<'_> {
+impl ForecastView<'_> {
     /// For people: predictions with the fitted laws, what of them could be checked here, and what
     /// they assume. Without a newline at the end.
     #[must_use]

@@ -33,7 +33,7 @@ const NONE: &str = "-";
 
 /// A study with everything that is needed to read it.
 #[derive(Clone, Copy, Debug)]
-pub struct Report<'a> {
+pub struct OverheadView<'a> {
     /// What was measured.
     pub study: &'a OverheadStudy,
     /// What it was measured on.
@@ -42,7 +42,7 @@ pub struct Report<'a> {
     pub noise: &'a Noise,
 }
 
-impl Report<'_> {
+impl OverheadView<'_> {
     /// For people, without a newline at the end.
     #[must_use]
     pub fn table(&self) -> String {
@@ -229,7 +229,7 @@ mod tests {
     #[test]
     fn the_table_has_figures_and_complaints() {
         let (study, machine) = (study(), Machine::here());
-        let table = Report { study: &study, machine: &machine, noise: &noise() }.table();
+        let table = OverheadView { study: &study, machine: &machine, noise: &noise() }.table();
         let line = |name: &str| {
             let line = table
                 .lines()
@@ -249,7 +249,7 @@ mod tests {
     #[test]
     fn json_keeps_nanoseconds_and_says_why_there_are_none() {
         let (study, machine) = (study(), Machine::here());
-        let text = Report { study: &study, machine: &machine, noise: &noise() }.json();
+        let text = OverheadView { study: &study, machine: &machine, noise: &noise() }.json();
         let value: serde_json::Value = serde_json::from_str(&text).expect("JSON");
         let [rows, bands, none] = [0, 1, 2].map(|index| &value["results"][index]);
         assert!(value["noise"]["disturbed"].is_boolean(), "{text}");

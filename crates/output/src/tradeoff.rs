@@ -9,7 +9,7 @@ use rayweave_measure::Machine;
 
 /// A study with everything that is needed to read it.
 #[derive(Clone, Copy, Debug)]
-pub struct Report<'a> {
+pub struct TradeoffView<'a> {
     /// The scene's name.
     pub scene: &'a str,
     /// Of the pictures, in pixels.
@@ -24,7 +24,7 @@ pub struct Report<'a> {
     pub machine: &'a Machine,
 }
 
-impl Report<'_> {
+impl TradeoffView<'_> {
     /// For people: every setting, which of them are worth choosing, and what to choose. Without a
     /// newline at the end.
     #[must_use]

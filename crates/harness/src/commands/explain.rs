@@ -13,7 +13,7 @@ use rayweave_contract::{Rect, Strategy};
 use rayweave_core::primary_rays;
 use rayweave_measure::Protocol;
 use rayweave_measure::explanation::{ExplainError, ExplainExperiment};
-use rayweave_output::explain::Report;
+use rayweave_output::explain::ExplanationView;
 use std::fs;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -102,7 +102,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let rays = |tile: Rect| {
         primary_rays(tile.width, tile.height, &input.scene.render, input.execution.share_samples)
     };
-    let report = Report {
+    let view = ExplanationView {
         scene: &input.name,
         size: (width, height),
         tile: tile.get(),
@@ -111,10 +111,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
         machine: &machine,
         noise: &noise,
     };
-    print(&format!("{}\n\n{}\n", input.describe(), report.text()))?;
-    json.map_or(Ok(()), |file| file.finish(report.json().as_bytes()))?;
-    trace.map_or(Ok(()), |file| file.finish(report.trace().as_bytes()))?;
-    pictures.map_or(Ok(()), |files| write_pictures(files, &report))?;
+    print(&format!("{}\n\n{}\n", input.describe(), view.text()))?;
+    json.map_or(Ok(()), |file| file.finish(view.json().as_bytes()))?;
+    trace.map_or(Ok(()), |file| file.finish(view.trace().as_bytes()))?;
+    pictures.map_or(Ok(()), |files| write_pictures(files, &view))?;
     Ok(Outcome::Passed)
 }
 
@@ -139,13 +139,13 @@ fn picture_files(folder: &Path, strategies: &[&dyn Strategy]) -> Result<Vec<Pict
     strategies.iter().map(of).collect()
 }
 
-fn write_pictures(files: Vec<PictureFiles>, report: &Report<'_>) -> Result<(), String> {
-    for (files, row) in files.into_iter().zip(&report.explanation.rows) {
-        files.timeline.finish(report.timeline(row)?.as_bytes())?;
+fn write_pictures(files: Vec<PictureFiles>, view: &ExplanationView<'_>) -> Result<(), String> {
+    for (files, row) in files.into_iter().zip(&view.explanation.rows) {
+        files.timeline.finish(view.timeline(row)?.as_bytes())?;
         files
             .owners
-            .finish(&ImageFormat::Png.encode(&report.owners(row).map_err(|e| e.to_string())?)?)?;
-        files.cost.finish(report.cost(row)?.as_bytes())?;
+            .finish(&ImageFormat::Png.encode(&view.owners(row).map_err(|e| e.to_string())?)?)?;
+        files.cost.finish(view.cost(row)?.as_bytes())?;
     }
     Ok(())
 }

@@ -8,7 +8,7 @@ use clap::Args;
 use rayweave_contract::Strategy;
 use rayweave_measure::Protocol;
 use rayweave_measure::overhead::Overhead;
-use rayweave_output::overhead::Report;
+use rayweave_output::overhead::OverheadView;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -52,8 +52,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
         overhead.run(|strategy, fraction| bar.show(fraction, strategy.to_owned()))
     });
     let study = study.map_err(|e| e.to_string())?;
-    let report = Report { study: &study, machine: &machine, noise: &noise };
-    print(&format!("{}\n", report.table()))?;
-    json.map_or(Ok(()), |file| file.finish(report.json().as_bytes()))?;
+    let view = OverheadView { study: &study, machine: &machine, noise: &noise };
+    print(&format!("{}\n", view.table()))?;
+    json.map_or(Ok(()), |file| file.finish(view.json().as_bytes()))?;
     Ok(if study.passed() { Outcome::Passed } else { Outcome::Failed })
 }

@@ -12,7 +12,7 @@ use clap::Args;
 use rayweave_contract::Strategy;
 use rayweave_measure::Protocol;
 use rayweave_measure::forecast::{Question, Stage};
-use rayweave_output::forecast::Report;
+use rayweave_output::forecast::ForecastView;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -76,7 +76,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let (forecast, machine, noise) =
         with_noise(|bar| question.answer(|stage, fraction| bar.show(fraction, message(stage))));
     let forecast = forecast.map_err(|e| format!("{}: {e}", input.name))?;
-    let report = Report {
+    let view = ForecastView {
         scene: &input.name,
         width,
         height,
@@ -85,8 +85,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
         machine: &machine,
         noise: &noise,
     };
-    print(&format!("{}\n{}\n", report.table(), input.arithmetic_line()))?;
-    json.map_or(Ok(()), |file| file.finish(report.json().as_bytes()))?;
-    svg.map_or(Ok(()), |file| file.finish(report.svg()?.as_bytes()))?;
+    print(&format!("{}\n{}\n", view.table(), input.arithmetic_line()))?;
+    json.map_or(Ok(()), |file| file.finish(view.json().as_bytes()))?;
+    svg.map_or(Ok(()), |file| file.finish(view.svg()?.as_bytes()))?;
     Ok(if forecast.comparison.passed() { Outcome::Passed } else { Outcome::Failed })
 }

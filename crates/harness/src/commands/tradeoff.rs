@@ -12,7 +12,7 @@ use rayweave_accuracy::tradeoff::{EXACT, Setting, TradeoffExperiment, TradeoffSt
 use rayweave_contract::{Image, Plan, Work};
 use rayweave_core::Scene;
 use rayweave_measure::{Machine, Protocol};
-use rayweave_output::tradeoff::Report;
+use rayweave_output::tradeoff::TradeoffView;
 use rayweave_scene_file::ImageSize;
 use std::fs;
 use std::num::NonZeroU32;
@@ -90,7 +90,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
 
     let (width, height) = size;
     let machine = Machine::here();
-    let report = Report {
+    let view = TradeoffView {
         scene: &name,
         width,
         height,
@@ -98,10 +98,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
         target_psnr: arguments.target_psnr,
         machine: &machine,
     };
-    print(&format!("{}\n", report.table()))?;
-    json.map_or(Ok(()), |file| file.finish(report.json().as_bytes()))?;
-    csv.map_or(Ok(()), |file| file.finish(report.csv().as_bytes()))?;
-    svg.map_or(Ok(()), |file| file.finish(report.svg()?.as_bytes()))?;
+    print(&format!("{}\n", view.table()))?;
+    json.map_or(Ok(()), |file| file.finish(view.json().as_bytes()))?;
+    csv.map_or(Ok(()), |file| file.finish(view.csv().as_bytes()))?;
+    svg.map_or(Ok(()), |file| file.finish(view.svg()?.as_bytes()))?;
     if let (Some(folder), Some(file)) = (&arguments.pictures, reference_file) {
         file.finish(&ImageFormat::Png.encode(&study.reference.image)?)?;
         write_pictures(folder, &scene, &study, size)?;

@@ -1,6 +1,6 @@
 //! The explanation for people.
 
-use super::{Report, Thread, imbalance, label, name};
+use super::{ExplanationView, Thread, imbalance, label, name};
 use crate::{machine, noise, style};
 use rayweave_measure::efficiency::Cause;
 use rayweave_measure::explanation::{ExplainedStrategy, Explanation};
@@ -8,19 +8,19 @@ use rayweave_measure::explanation::{ExplainedStrategy, Explanation};
 /// A share of the thread-time below which nothing is worth a word.
 const NOTABLE: f64 = 0.01;
 
-pub(super) fn text(report: &Report<'_>) -> String {
+pub(super) fn text(view: &ExplanationView<'_>) -> String {
     let mut lines = Vec::new();
-    let unit = Unit::of(report.explanation);
-    for row in &report.explanation.rows {
-        lines.extend([heading(report.explanation, row, unit), String::new()]);
-        lines.extend([causes(report.explanation, row, unit), String::new()]);
+    let unit = Unit::of(view.explanation);
+    for row in &view.explanation.rows {
+        lines.extend([heading(view.explanation, row, unit), String::new()]);
+        lines.extend([causes(view.explanation, row, unit), String::new()]);
         lines.extend([sum(row, unit), recording(row), String::new()]);
-        lines.extend([threads(report, row, unit), String::new()]);
+        lines.extend([threads(view, row, unit), String::new()]);
         lines.extend([gaps(row), advice(row), String::new()]);
     }
-    lines.extend(legend(report.explanation));
-    lines.push(noise::text(report.noise));
-    lines.push(machine::text(report.machine));
+    lines.extend(legend(view.explanation));
+    lines.push(noise::text(view.noise));
+    lines.push(machine::text(view.machine));
     lines.join("\n")
 }
 
@@ -82,7 +82,7 @@ fn recording(row: &ExplainedStrategy) -> String {
 }
 
 /// What each thread does.
-fn threads(report: &Report<'_>, row: &ExplainedStrategy, unit: Unit) -> String {
+fn threads(view: &ExplanationView<'_>, row: &ExplainedStrategy, unit: Unit) -> String {
     let timed = |what| format!("{what}\n{}", unit.name);
     let header = [
         "thread".to_owned(),
@@ -113,11 +113,8 @@ fn threads(report: &Report<'_>, row: &ExplainedStrategy, unit: Unit) -> String {
         ]
     };
     let without = row.threads.saturating_sub(row.timeline.lanes.len());
-    let table = style::table(
-        header,
-        Thread::all(row, report.rays).into_iter().enumerate().map(cells),
-        1..=9,
-    );
+    let table =
+        style::table(header, Thread::all(row, view.rays).into_iter().enumerate().map(cells), 1..=9);
     match without {
         0 => table,
         1 => table + "\n1 more thread got no piece",

@@ -71,11 +71,11 @@ fn explanation() -> Explanation {
     }
 }
 
-fn with_report<T>(check: impl FnOnce(&Report<'_>) -> T) -> T {
+fn with_view<T>(check: impl FnOnce(&ExplanationView<'_>) -> T) -> T {
     let (machine, noise) = (Machine::here(), noise());
     let explanation = explanation();
     let rays = |rect: Rect| Some(u64::from(rect.width * rect.height) + 1);
-    check(&Report {
+    check(&ExplanationView {
         scene: "room",
         size: (8, 4),
         tile: 4,
@@ -88,7 +88,7 @@ fn with_report<T>(check: impl FnOnce(&Report<'_>) -> T) -> T {
 
 #[test]
 fn text_puts_a_figure_to_each_cause_and_adds_them_up() {
-    let text = with_report(|report| report.text());
+    let text = with_view(|view| view.text());
     let lines: Vec<Vec<&str>> =
         text.lines().map(|line| line.split_whitespace().collect()).collect();
     let has = |expected: &str| {
@@ -129,7 +129,7 @@ fn what_chance_outweighs_is_no_verdict() {
         // Its causes sum up to 18.8 ms, and the largest takes 10.
         explanation.rows[0].lost_ns = lost_ms * MS;
         let (size, tile, machine, noise) = ((8, 4), 4, &machine, &noise);
-        let text = Report {
+        let text = ExplanationView {
             scene: "room",
             size,
             tile,
@@ -152,7 +152,8 @@ fn short_renderings_are_told_in_microseconds() {
     let told = |explanation: &Explanation| {
         let rays = |_| None;
         let (size, tile, machine, noise) = ((8, 4), 4, &machine, &noise);
-        Report { scene: "room", size, tile, explanation, rays: &rays, machine, noise }.text()
+        ExplanationView { scene: "room", size, tile, explanation, rays: &rays, machine, noise }
+            .text()
     };
     explanation.rows[1].wall_ns = 10.0 * MS;
     assert!(told(&explanation).contains("by-pixel on 3 threads: 10.00 ms, sequential 100.00 ms: "));
@@ -179,7 +180,7 @@ fn little_lost_is_said_to_be_little() {
         &breakdown(1, [100.2, 1.0, 0.0, 1.0]),
     );
     explanation.rows = vec![row];
-    let report = Report {
+    let view = ExplanationView {
         scene: "room",
         size: (8, 4),
         tile: 4,
@@ -188,7 +189,7 @@ fn little_lost_is_said_to_be_little() {
         machine: &machine,
         noise: &noise,
     };
-    let text = report.text();
+    let text = view.text();
     assert!(text.starts_with("queue on 1 thread: "), "{text}");
     assert!(
         text.contains("adds up to 0.20 of 0.50 ms lost (less than 1 % of the thread-time)\n"),
@@ -199,7 +200,7 @@ fn little_lost_is_said_to_be_little() {
 
 #[test]
 fn json_has_every_cause_and_thread() {
-    let value: Value = serde_json::from_str(&with_report(|report| report.json())).expect("JSON");
+    let value: Value = serde_json::from_str(&with_view(|view| view.json())).expect("JSON");
     assert_eq!(
         (&value["schema"], &value["scene"], &value["rounds"]),
         (&1.into(), &"room".into(), &7.into())
@@ -234,7 +235,7 @@ fn json_has_every_cause_and_thread() {
 /// duration; slices of one thread do not overlap; processes and threads have names.
 #[test]
 fn the_trace_keeps_the_rules_of_its_format() {
-    let text = with_report(|report| report.trace());
+    let text = with_view(|view| view.trace());
     let trace: Value = serde_json::from_str(&text).expect("JSON");
     let events = trace["traceEvents"].as_array().expect("a list");
     let mut slices: BTreeMap<(u64, u64), Vec<(f64, f64)>> = BTreeMap::new();
@@ -281,8 +282,8 @@ fn the_trace_keeps_the_rules_of_its_format() {
 
 #[test]
 fn the_time_line_has_a_bar_for_each_thread_and_a_name() {
-    let [queue, pixels] = with_report(|report| {
-        [0, 1].map(|place| report.timeline(&report.explanation.rows[place]).expect("drawn"))
+    let [queue, pixels] = with_view(|view| {
+        [0, 1].map(|place| view.timeline(&view.explanation.rows[place]).expect("drawn"))
     });
     for part in
         ["queue 0: computes 79.9 % of the time", "queue 1: computes 25.0 % of the time", "ms since"]
@@ -297,7 +298,7 @@ fn the_time_line_has_a_bar_for_each_thread_and_a_name() {
 
 #[test]
 fn the_map_of_cost_has_each_piece_and_a_scale() {
-    let map = with_report(|report| report.cost(&report.explanation.rows[0]).expect("drawn"));
+    let map = with_view(|view| view.cost(&view.explanation.rows[0]).expect("drawn"));
     assert_eq!(map.matches("<rect").count(), 1 + 4 + 64, "{map}");
     assert!(map.contains("us a pixel") && map.contains("queue: what a pixel took"), "{map}");
 }

@@ -3,7 +3,7 @@
 //! A strategy is a process and a thread is a thread; what the rendering takes as a whole is thread
 //! 0. Times are microseconds since the rendering began. Source: Google, "Trace Event Format".
 
-use super::{Report, label, runs};
+use super::{ExplanationView, label, runs};
 use rayweave_measure::explanation::ExplainedStrategy;
 use serde::Serialize;
 
@@ -44,8 +44,8 @@ enum Arguments {
     Whole { threads: usize },
 }
 
-pub(super) fn text(report: &Report<'_>) -> String {
-    let rows = report.explanation.rows.iter().enumerate();
+pub(super) fn text(view: &ExplanationView<'_>) -> String {
+    let rows = view.explanation.rows.iter().enumerate();
     let trace_events = rows.flat_map(|(index, row)| events(index + 1, row)).collect();
     let trace = Trace { display_time_unit: "ms", trace_events };
     // In one line: indented it would be thrice as long.

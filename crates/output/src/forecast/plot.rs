@@ -1,6 +1,6 @@
 //! Speed-up over threads on logarithmic axes.
 
-use super::Report;
+use super::ForecastView;
 use plotters::prelude::*;
 use rayweave_measure::forecast::ForecastCurve;
 
@@ -14,17 +14,17 @@ const MARKER: i32 = 4;
 
 type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
 
-pub(super) fn svg(report: &Report<'_>) -> Result<String, String> {
+pub(super) fn svg(view: &ForecastView<'_>) -> Result<String, String> {
     let mut text = String::new();
-    draw(report, &mut text).map_err(|e| format!("the plot cannot be drawn: {e}"))?;
+    draw(view, &mut text).map_err(|e| format!("the plot cannot be drawn: {e}"))?;
     Ok(text)
 }
 
-fn draw(report: &Report<'_>, text: &mut String) -> Drawn {
-    let curves = &report.forecast.curves;
+fn draw(view: &ForecastView<'_>, text: &mut String) -> Drawn {
+    let curves = &view.forecast.curves;
     let root = SVGBackend::with_string(text, SIZE).into_drawing_area();
     root.fill(&WHITE)?;
-    let Report { scene, width, height, .. } = report;
+    let ForecastView { scene, width, height, .. } = view;
     let title = format!(
         "{scene}, {width} x {height} pixels: speed-up, predicted (lines) and measured (circles)"
     );

@@ -1,27 +1,27 @@
 //! The forecast for people.
 
-use super::{ASSUMPTIONS, Report};
+use super::{ASSUMPTIONS, ForecastView};
 use crate::compare::complaint;
 use crate::{machine, noise, style};
 use rayweave_measure::forecast::{ForecastCurve, ForecastPoint, Slowdown};
 
 const NONE: &str = "-";
 
-pub(super) fn text(report: &Report<'_>) -> String {
-    let forecast = report.forecast;
-    let mut parts = vec![heading(report), predictions(&forecast.curves), laws_legend().to_owned()];
+pub(super) fn text(view: &ForecastView<'_>) -> String {
+    let forecast = view.forecast;
+    let mut parts = vec![heading(view), predictions(&forecast.curves), laws_legend().to_owned()];
     parts.extend(checks(&forecast.curves));
-    parts.push(basis(report));
+    parts.push(basis(view));
     let complaints = forecast.comparison.rows.iter().filter_map(complaint);
     let complaints: Vec<String> = complaints.chain(forecast.unavailable.iter().cloned()).collect();
     parts.extend((!complaints.is_empty()).then(|| complaints.join("\n")));
     parts.push(format!("assumed: {}.", ASSUMPTIONS.join(";\n")));
-    parts.push(format!("{}\n{}", noise::text(report.noise), machine::text(report.machine)));
+    parts.push(format!("{}\n{}", noise::text(view.noise), machine::text(view.machine)));
     parts.join("\n\n")
 }
 
-fn heading(report: &Report<'_>) -> String {
-    let Report { scene, width, height, tile, .. } = report;
+fn heading(view: &ForecastView<'_>) -> String {
+    let ForecastView { scene, width, height, tile, .. } = view;
     format!(
         "{scene}, {width} x {height} pixels, tiles of {tile}: predicted speed-up by number of threads"
     )
@@ -104,8 +104,8 @@ fn check(curve: &ForecastCurve, point: &ForecastPoint) -> Option<[String; 5]> {
 }
 
 /// What the predictions were made from.
-fn basis(report: &Report<'_>) -> String {
-    let forecast = report.forecast;
+fn basis(view: &ForecastView<'_>) -> String {
+    let forecast = view.forecast;
     let slowdowns = forecast.slowdowns.iter().map(|&Slowdown { threads, factor: slowdown }| {
         let used = if slowdown.median < 1.0 { "by chance, 1 is used" } else { "used" };
         let slowdown = style::precise_interval(slowdown);

@@ -45,9 +45,9 @@ fn forecast() -> Forecast {
     }
 }
 
-fn with_report<T>(read: impl FnOnce(&Report<'_>) -> T) -> T {
+fn with_view<T>(read: impl FnOnce(&ForecastView<'_>) -> T) -> T {
     let (forecast, machine, noise) = (forecast(), Machine::here(), noise());
-    read(&Report {
+    read(&ForecastView {
         scene: "room",
         width: 5,
         height: 4,
@@ -60,7 +60,7 @@ fn with_report<T>(read: impl FnOnce(&Report<'_>) -> T) -> T {
 
 #[test]
 fn the_table_predicts_checks_and_says_what_is_assumed() {
-    let table = with_report(|report| report.table());
+    let table = with_view(|view| view.table());
     let words = |line: &str| line.split_whitespace().collect::<Vec<_>>().join(" ");
     let lines: Vec<String> = table.lines().map(words).collect();
     let has = |line: &str| assert!(lines.iter().any(|known| known == line), "{line}: {table}");
@@ -78,7 +78,7 @@ fn the_table_predicts_checks_and_says_what_is_assumed() {
 
 #[test]
 fn json_has_every_point_and_law() {
-    let value: Value = serde_json::from_str(&with_report(|report| report.json())).expect("JSON");
+    let value: Value = serde_json::from_str(&with_view(|view| view.json())).expect("JSON");
     let result = &value["results"][1];
     assert_eq!((&result["strategy"], &result["threads"]), (&"queue".into(), &2.into()));
     assert_eq!((&result["predicted"], &result["measured"]["low"]), (&1.8.into(), &1.9.into()));
@@ -98,7 +98,7 @@ fn json_has_every_point_and_law() {
 
 #[test]
 fn the_plot_names_every_strategy() {
-    let svg = with_report(|report| report.svg()).expect("a plot");
+    let svg = with_view(|view| view.svg()).expect("a plot");
     for word in ["<svg", "queue", "lock", "room, 5 x 4 pixels", "threads"] {
         assert!(svg.contains(word), "{word}");
     }

@@ -1,6 +1,6 @@
 //! The study for other programs: what a result is, is said once, for JSON and CSV.
 
-use super::Report;
+use super::TradeoffView;
 use crate::csv;
 use crate::json;
 use rayweave_accuracy::tradeoff::{ArithmeticCost, TradeoffRow, reference_rays_per_pixel};
@@ -67,16 +67,16 @@ struct CostEntry {
     f64_over_f32_robust: Interval,
 }
 
-pub(super) fn json(report: &Report<'_>) -> String {
-    let study = report.study;
+pub(super) fn json(view: &TradeoffView<'_>) -> String {
+    let study = view.study;
     let with_samples = |row| ResultWithSamples { result: entry(row), samples_ns: &row.samples_ns };
     json::text(&Object {
         schema: SCHEMA,
-        scene: report.scene,
-        width: report.width,
-        height: report.height,
+        scene: view.scene,
+        width: view.width,
+        height: view.height,
         rounds: study.rounds,
-        machine: report.machine,
+        machine: view.machine,
         reference: Reference {
             rays_per_pixel: reference_rays_per_pixel(),
             rmse_estimate: study.reference.uncertainty,
@@ -86,8 +86,8 @@ pub(super) fn json(report: &Report<'_>) -> String {
     })
 }
 
-pub(super) fn csv(report: &Report<'_>) -> String {
-    csv::text(report.study.rows.iter().map(entry))
+pub(super) fn csv(view: &TradeoffView<'_>) -> String {
+    csv::text(view.study.rows.iter().map(entry))
 }
 
 fn entry(row: &TradeoffRow) -> Entry {

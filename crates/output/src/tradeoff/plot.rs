@@ -1,6 +1,6 @@
 //! Time against error on logarithmic axes.
 
-use super::Report;
+use super::TradeoffView;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use rayweave_accuracy::metrics::psnr;
@@ -26,30 +26,28 @@ type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
 
 type Axes = (std::ops::Range<f64>, std::ops::Range<f64>);
 
-pub(super) fn svg(report: &Report<'_>) -> Result<String, String> {
+pub(super) fn svg(view: &TradeoffView<'_>) -> Result<String, String> {
     let mut text = String::new();
-    draw(report, &mut text).map_err(|e| format!("the plot cannot be drawn: {e}"))?;
+    draw(view, &mut text).map_err(|e| format!("the plot cannot be drawn: {e}"))?;
     Ok(text)
 }
 
-fn draw(report: &Report<'_>, text: &mut String) -> Drawn {
+fn draw(view: &TradeoffView<'_>, text: &mut String) -> Drawn {
     let root = SVGBackend::with_string(text, SIZE).into_drawing_area();
     root.fill(&WHITE)?;
-    let title = format!(
-        "{}, {} x {} pixels: time against error",
-        report.scene, report.width, report.height
-    );
+    let title =
+        format!("{}, {} x {} pixels: time against error", view.scene, view.width, view.height);
     let root = root.titled(&title, ("sans-serif", 24))?;
-    let axes = axes(&report.study.rows);
+    let axes = axes(&view.study.rows);
     for (panel, arithmetic) in root.split_evenly((2, 2)).iter().zip(ARITHMETICS) {
-        draw_panel(report, panel, arithmetic, &axes)?;
+        draw_panel(view, panel, arithmetic, &axes)?;
     }
     root.present()?;
     Ok(())
 }
 
 fn draw_panel(
-    report: &Report<'_>,
+    view: &TradeoffView<'_>,
     panel: &DrawingArea<SVGBackend<'_>, plotters::coord::Shift>,
     arithmetic: Arithmetic,
     (times, errors): &Axes,
@@ -68,13 +66,13 @@ fn draw_panel(
         .y_label_formatter(&|rmse| format!("{rmse:.0e} ({:.0})", psnr(*rmse)))
         .light_line_style(RGBColor(240, 240, 240))
         .draw()?;
-    let front = report.front().into_iter().map(place);
+    let front = view.front().into_iter().map(place);
     chart
         .draw_series(LineSeries::new(front, FRONT.mix(0.5).stroke_width(2)))?
         .label("Pareto front of all panels")
         .legend(|(x, y)| PathElement::new([(x, y), (x + 16, y)], FRONT.mix(0.5).stroke_width(2)));
 
-    let rows = || report.study.rows.iter().filter(|row| row.setting.arithmetic == arithmetic);
+    let rows = || view.study.rows.iter().filter(|row| row.setting.arithmetic == arithmetic);
     let mut depths: Vec<u32> = Vec::new();
     for row in rows() {
         if !depths.contains(&row.setting.max_reflections) {

@@ -1,6 +1,6 @@
 //! The study for people.
 
-use super::{Report, sampling_name};
+use super::{TradeoffView, sampling_name};
 use crate::machine;
 use crate::style::{self, interval};
 use rayweave_accuracy::metrics::psnr;
@@ -29,27 +29,27 @@ const NUMBERS: std::ops::RangeInclusive<usize> = 4..=13;
 const COST_HEADER: [&str; 4] =
     ["cost", "robust / textbook\nin f32", "robust / textbook\nin f64", "f64 / f32\nrobust"];
 
-pub(super) fn text(report: &Report<'_>) -> String {
-    let study = report.study;
+pub(super) fn text(view: &TradeoffView<'_>) -> String {
+    let study = view.study;
     let mut rows: Vec<&TradeoffRow> = study.rows.iter().collect();
     rows.sort_by(|a, b| a.median_ns.total_cmp(&b.median_ns));
-    let front = report.front();
+    let front = view.front();
     [
-        heading(report),
+        heading(view),
         style::table(HEADER, rows.into_iter().map(cells), NUMBERS),
-        notes(report),
+        notes(view),
         "The Pareto front: the most exact setting for its time. All others are dominated."
             .to_owned(),
         style::table(HEADER, front.into_iter().map(cells), NUMBERS),
-        choice(report),
+        choice(view),
         style::table(COST_HEADER, study.costs.iter().map(cost_cells), 1..=3),
-        machine::text(report.machine),
+        machine::text(view.machine),
     ]
     .join("\n\n")
 }
 
-fn heading(report: &Report<'_>) -> String {
-    let Report { scene, width, height, study, .. } = report;
+fn heading(view: &TradeoffView<'_>) -> String {
+    let TradeoffView { scene, width, height, study, .. } = view;
     format!(
         "{scene}, {width} x {height} pixels, one thread; {} settings in {} interleaved rounds",
         study.rows.len(),
@@ -86,8 +86,8 @@ fn cost_cells(cost: &ArithmeticCost) -> [String; COST_HEADER.len()] {
     ]
 }
 
-fn notes(report: &Report<'_>) -> String {
-    let study = report.study;
+fn notes(view: &TradeoffView<'_>) -> String {
+    let study = view.study;
     let truth = decibels(psnr(study.reference.uncertainty));
     let best = study.rows.iter().map(|row| row.error.rmse).fold(1.0, f64::min);
     let share = study.reference.uncertainty / best;
@@ -115,8 +115,8 @@ fn notes(report: &Report<'_>) -> String {
     )
 }
 
-fn choice(report: &Report<'_>) -> String {
-    let (study, target) = (report.study, report.target_psnr);
+fn choice(view: &TradeoffView<'_>) -> String {
+    let (study, target) = (view.study, view.target_psnr);
     let own = study.report_row();
     let own_psnr = decibels(own.error.psnr());
     let Some(row) = study.fastest_with(target) else {
