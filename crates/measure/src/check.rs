@@ -12,6 +12,7 @@ use crate::finding::{CheckedRender, Fault, Finding, ImageDifference};
 use crate::recorder::{Recorder, TileRecord};
 use crate::sentinel;
 use rayweave_contract::{Image, ImageError, Plan, Renderer, Rgb, Strategy, Threads, Work};
+use serde::Serialize;
 use std::fmt;
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::time::Duration;
@@ -66,7 +67,7 @@ pub struct CheckProgress {
 }
 
 /// The result of a check.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Verdict {
     /// The combinations that were checked.
     pub checked: Vec<Checked>,
@@ -77,16 +78,28 @@ pub struct Verdict {
 }
 
 /// The combinations of a [`Check`]: every strategy with every number of threads, tile and image.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Checked {
     /// The names of the strategies.
     pub strategies: Vec<&'static str>,
-    /// The name, width and height of each case.
-    pub images: Vec<(String, u32, u32)>,
+    /// The image of each case.
+    #[serde(rename = "pictures")]
+    pub images: Vec<CheckedImage>,
     /// The numbers of computing threads.
     pub threads: Vec<usize>,
     /// The sides of a tile in pixels.
     pub tiles: Vec<u32>,
+}
+
+/// The name of a case, and the size of its image in pixels.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct CheckedImage {
+    /// The name of the work.
+    pub scene: String,
+    /// Width of the image.
+    pub width: u32,
+    /// Height of the image.
+    pub height: u32,
 }
 
 /// An error that leaves nothing to check.
@@ -153,7 +166,11 @@ impl<'a> Check<'a> {
             images: self
                 .cases
                 .iter()
-                .map(|case| (case.name.clone(), case.width, case.height))
+                .map(|case| CheckedImage {
+                    scene: case.name.clone(),
+                    width: case.width,
+                    height: case.height,
+                })
                 .collect(),
             threads: self.threads.iter().map(|threads| threads.get()).collect(),
             tiles: self.tiles.iter().map(|tile| tile.get()).collect(),

@@ -2,23 +2,27 @@
 
 use crate::recorder::Computation;
 use rayweave_contract::Rgb;
+use serde::ser::SerializeStruct;
+use serde::{Serialize, Serializer};
 use std::fmt;
 
 /// A fault of a strategy, and the rendering in which it shows.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Finding {
     /// The strategy's name.
     pub strategy: &'static str,
     /// The number of computing threads asked for.
     pub threads: usize,
     /// The rendering in which the fault shows; `None` if it is not about one.
+    #[serde(rename = "picture")]
     pub render: Option<CheckedRender>,
     /// The fault.
+    #[serde(flatten)]
     pub fault: Fault,
 }
 
 /// One rendering of a check.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct CheckedRender {
     /// The name of the work.
     pub scene: String,
@@ -85,6 +89,22 @@ impl PartialEq for ImageDifference {
             && bits(self.expected) == bits(other.expected)
             && self.found.map(bits) == other.found.map(bits)
             && self.computation == other.computation
+    }
+}
+
+/// Serializes the kind of fault and its message.
+impl Serialize for Fault {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let kind = match self {
+            Self::Different(_) => "different",
+            Self::NotOnce { .. } => "not-once",
+            Self::Threads { .. } => "threads",
+            Self::Failed(_) => "failed",
+        };
+        let mut fault = serializer.serialize_struct("Fault", 2)?;
+        fault.serialize_field("kind", kind)?;
+        fault.serialize_field("message", &self.to_string())?;
+        fault.end()
     }
 }
 

@@ -1,18 +1,17 @@
-//! What a check found, as text and as JSON.
+//! The verdict of `rayweave check` as text and as JSON.
 
 use crate::json;
-use rayweave_measure::check::Checked;
-use rayweave_measure::{Fault, Finding, Machine, Verdict};
+use rayweave_measure::{Machine, Verdict};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// The shape of the JSON; it changes when a key changes its meaning or goes.
+/// The schema number of the JSON. It changes when a key is removed or changes its meaning.
 const SCHEMA: u32 = 1;
 
-/// Findings told of each strategy: enough to see a pattern, and few enough to read.
-const TOLD: usize = 5;
+/// The number of findings that the text shows for each strategy.
+const SHOWN: usize = 5;
 
-/// The findings, the first few of each strategy, and a last line that sums up.
+/// Returns the first findings of each strategy, and a last line that sums up.
 #[must_use]
 pub fn text(verdict: &Verdict) -> String {
     let mut lines = Vec::new();
@@ -20,12 +19,12 @@ pub fn text(verdict: &Verdict) -> String {
     for finding in &verdict.findings {
         let count = counts.entry(finding.strategy).or_insert(0);
         *count += 1;
-        if *count <= TOLD {
+        if *count <= SHOWN {
             lines.push(finding.to_string());
         }
     }
-    for (strategy, count) in counts.iter().filter(|(_, count)| **count > TOLD) {
-        lines.push(format!("{strategy}: and {} more", count - TOLD));
+    for (strategy, count) in counts.iter().filter(|(_, count)| **count > SHOWN) {
+        lines.push(format!("{strategy}: and {} more", count - SHOWN));
     }
     let wrong: Vec<String> =
         counts.iter().map(|(strategy, count)| format!("{strategy} ({count} findings)")).collect();
@@ -41,108 +40,35 @@ pub fn text(verdict: &Verdict) -> String {
     lines.join("\n")
 }
 
-/// The whole verdict as a JSON object of schema 1: `schema`, `checked`, `compared`, `holds`,
-/// `machine` and `findings`. Keys may be added. Each of `checked` has `strategies`, `pictures`
-/// (`scene`, `width`, `height`), `threads` and `tiles`, of which each was checked with each; what
-/// starts no thread was checked as one. Each of `findings` has `strategy`, `threads`, `kind`,
-/// `message` and, where it is about a picture, `picture`.
+/// Returns the verdict as a JSON object of schema 1: `schema`, `checked`, `compared`, `findings`,
+/// `holds` and `machine`. Keys may be added.
+///
+/// Each entry of `checked` has `strategies`, `pictures` (`scene`, `width`, `height`), `threads` and
+/// `tiles`; each of these was checked with each of the others. A strategy that starts no threads
+/// was checked with one. Each entry of `findings` has `strategy`, `threads`, `kind`, `message` and,
+/// if it is about an image, `picture`.
 #[must_use]
 pub fn json(verdict: &Verdict, machine: &Machine) -> String {
-    let object = Object {
-        schema: SCHEMA,
-        checked: verdict.checked.iter().map(Part::new).collect(),
-        compared: verdict.compared,
-        holds: verdict.passed(),
-        machine,
-        findings: verdict.findings.iter().map(Item::new).collect(),
-    };
-    json::text(&object)
+    json::text(&CheckDocument { schema: SCHEMA, verdict, holds: verdict.passed(), machine })
 }
 
 #[derive(Serialize)]
-struct Object<'a> {
+struct CheckDocument<'a> {
     schema: u32,
-    checked: Vec<Part<'a>>,
-    compared: usize,
+    #[serde(flatten)]
+    verdict: &'a Verdict,
     holds: bool,
     machine: &'a Machine,
-    findings: Vec<Item<'a>>,
-}
-
-#[derive(Serialize)]
-struct Part<'a> {
-    strategies: &'a [&'static str],
-    pictures: Vec<Size<'a>>,
-    threads: &'a [usize],
-    tiles: &'a [u32],
-}
-
-#[derive(Serialize)]
-struct Size<'a> {
-    scene: &'a str,
-    width: u32,
-    height: u32,
-}
-
-impl<'a> Part<'a> {
-    fn new(Checked { strategies, images, threads, tiles }: &'a Checked) -> Self {
-        let size = |(scene, width, height): &'a (String, u32, u32)| Size {
-            scene,
-            width: *width,
-            height: *height,
-        };
-        Self { strategies, pictures: images.iter().map(size).collect(), threads, tiles }
-    }
-}
-
-#[derive(Serialize)]
-struct Item<'a> {
-    strategy: &'a str,
-    threads: usize,
-    kind: &'static str,
-    picture: Option<Picture<'a>>,
-    message: String,
-}
-
-#[derive(Serialize)]
-struct Picture<'a> {
-    scene: &'a str,
-    width: u32,
-    height: u32,
-    tile: u32,
-    repetition: usize,
-}
-
-impl<'a> Item<'a> {
-    fn new(finding: &'a Finding) -> Self {
-        Self {
-            strategy: finding.strategy,
-            threads: finding.threads,
-            kind: match finding.fault {
-                Fault::Different(_) => "different",
-                Fault::NotOnce { .. } => "not-once",
-                Fault::Threads { .. } => "threads",
-                Fault::Failed(_) => "failed",
-            },
-            picture: finding.render.as_ref().map(|picture| Picture {
-                scene: &picture.scene,
-                width: picture.width,
-                height: picture.height,
-                tile: picture.tile,
-                repetition: picture.repetition,
-            }),
-            message: finding.fault.to_string(),
-        }
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rayweave_measure::finding;
+    use rayweave_measure::check::{Checked, CheckedImage};
+    use rayweave_measure::{Fault, Finding, finding};
 
     fn verdict(findings: usize) -> Verdict {
-        let picture = finding::CheckedRender {
+        let render = finding::CheckedRender {
             scene: "room".to_owned(),
             width: 7,
             height: 3,
@@ -152,10 +78,10 @@ mod tests {
         let found = |found| Finding {
             strategy: "one",
             threads: 2,
-            render: Some(picture.clone()),
+            render: Some(render.clone()),
             fault: Fault::Threads { expected: 2, found },
         };
-        let images = vec![("room".to_owned(), 7, 3)];
+        let images = vec![CheckedImage { scene: "room".to_owned(), width: 7, height: 3 }];
         let checked =
             vec![Checked { strategies: vec!["one"], images, threads: vec![1, 2], tiles: vec![8] }];
         Verdict { checked, compared: 96, findings: (10..10 + findings).map(found).collect() }

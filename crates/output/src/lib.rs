@@ -1,13 +1,13 @@
-//! Results as text: terminal, JSON, CSV, Markdown and SVG. Everything here returns text; nothing
-//! prints.
+//! The results of every command as text: for a terminal, as JSON, CSV, Markdown and SVG. Functions
+//! return text; nothing prints.
 //!
 //! * [`compare::Results`]: the list of measurements of a comparison, and its views;
-//! * [`check`]: the findings of a check;
-//! * [`explain::Report`]: why strategies lose;
-//! * [`accuracy`]: errors of a kernel on hard cases;
-//! * [`tradeoff::Report`]: speed against error;
-//! * [`overhead::Report`]: what strategies cost beside their work;
-//! * [`forecast::Report`]: speed-ups predicted for more threads.
+//! * [`check`]: the verdict of a check;
+//! * [`explain::ExplanationView`]: where the time of the threads goes;
+//! * [`accuracy`]: the score of a kernel on hard cases;
+//! * [`tradeoff::TradeoffView`]: speed against error;
+//! * [`overhead::OverheadView`]: the costs of a strategy beyond its work;
+//! * [`forecast::ForecastView`]: predicted speed-ups for more threads.
 
 pub mod accuracy;
 pub mod check;
@@ -19,5 +19,6 @@ mod json;
 pub mod machine;
 mod noise;
 pub mod overhead;
+mod plot;
 mod style;
 pub mod tradeoff;

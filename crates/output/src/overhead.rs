@@ -1,16 +1,13 @@
-//! What strategies cost beside their work, for people and for other programs.
+//! The result of `rayweave overhead` as a table and as JSON.
 
 use crate::json;
 use crate::machine;
 use crate::{noise, style};
-use rayweave_contract::Granularity;
-use rayweave_measure::overhead::{
-    LARGEST_SIDE, OverheadFigures, OverheadRow, OverheadStudy, PIXEL_NS, TASKS, TILE,
-};
+use rayweave_measure::overhead::{LARGEST_SIDE, OverheadRow, OverheadStudy, PIXEL_NS, TASKS, TILE};
 use rayweave_measure::{Interval, Machine, Noise};
 use serde::Serialize;
 
-/// It changes when a key changes its meaning or goes.
+/// The schema number of the JSON. It changes when a key is removed or changes its meaning.
 const SCHEMA: u32 = 1;
 
 const HEADER: [&str; 10] = [
@@ -26,56 +23,53 @@ const HEADER: [&str; 10] = [
     "later\nus",
 ];
 
-/// The columns of numbers, which line up at their right.
+/// The columns of numbers.
 const NUMBERS: std::ops::RangeInclusive<usize> = 3..=9;
 
-const NONE: &str = "-";
-
-/// A study with everything that is needed to read it.
+/// The costs of all strategies, with the machine and its noise.
 #[derive(Clone, Copy, Debug)]
 pub struct OverheadView<'a> {
-    /// What was measured.
+    /// The measured costs.
     pub study: &'a OverheadStudy,
-    /// What it was measured on.
+    /// The machine that ran the measurement.
     pub machine: &'a Machine,
-    /// What else went on there.
+    /// Other activity on the machine meanwhile.
     pub noise: &'a Noise,
 }
 
 impl OverheadView<'_> {
-    /// For people, without a newline at the end.
+    /// Returns a table with a row for each strategy, without a newline at the end.
     #[must_use]
     pub fn table(&self) -> String {
         let OverheadStudy { rows, step_ns, rounds } = self.study;
         let complaints = rows.iter().filter_map(|row| row.figures.as_ref().err());
         let mut lines = vec![
-            format!("synthetic work, {rounds} interleaved rounds, every picture verified"),
+            format!("synthetic work, {rounds} interleaved rounds, every image verified"),
             String::new(),
             style::table(HEADER, rows.iter().map(cells), NUMBERS),
             String::new(),
         ];
         lines.extend(complaints.map(ToString::to_string));
         lines.push(format!(
-            "dispatch: a rendering's time for each more piece of next to no work [95 % interval].\n\
-             METG(50 %): the shortest piece, by its work, that leaves half of the best efficiency; {TASKS} pieces, \
-             bands: one a thread.\n\
-             break-even: the side of the smallest square, of {PIXEL_NS} ns a pixel, from which on it is faster than \
-             the reference\n\
-             (tiles of {TILE}; tried up to {LARGEST_SIDE}).\n\
-             first, later: the first and the third rendering of a small picture after preparing.\n\
-             a step of the work takes {step_ns:.2} ns."
+            "dispatch: time of each additional piece with almost no work [95 % interval].\n\
+             METG(50 %): duration of the smallest piece that keeps half of the best efficiency,\n\
+             with {TASKS} pieces, or one for each thread with bands. \
+             One step of the work takes {step_ns:.2} ns.\n\
+             break-even: side of the smallest square image, at {PIXEL_NS} ns a pixel, that is \
+             faster than the\nreference (tiles of {TILE}; up to {LARGEST_SIDE} pixels).\n\
+             first, later: first and third rendering of a small image after preparation."
         ));
         lines.push(noise::text(self.noise));
         lines.push(machine::text(self.machine));
         lines.join("\n")
     }
 
-    /// For programs: an object of schema 1, a result a strategy. Times are in nanoseconds; what
-    /// could not be measured is null, and `error` says why.
+    /// Returns a JSON object of schema 1 with a result for each strategy. Times are in nanoseconds.
+    /// A figure that could not be measured is null, and `error` says why.
     #[must_use]
     pub fn json(&self) -> String {
         let OverheadStudy { rows, step_ns, rounds } = self.study;
-        json::text(&Object {
+        json::text(&OverheadDocument {
             schema: SCHEMA,
             rounds: *rounds,
             step_ns: *step_ns,
@@ -84,60 +78,37 @@ impl OverheadView<'_> {
             break_even_largest_side: LARGEST_SIDE,
             noise: self.noise,
             machine: self.machine,
-            results: rows.iter().map(Item::new).collect(),
+            results: rows.iter().map(OverheadEntry::new).collect(),
         })
     }
 }
 
 fn cells(row: &OverheadRow) -> [String; HEADER.len()] {
-    let piece = piece(row.granularity).to_owned();
+    let none = || "-".to_owned();
+    let dispatch = |interval: Option<Interval>| {
+        interval.map_or_else(none, |Interval { median, low, high }| {
+            format!("{median:.1} [{low:.1}, {high:.1}]")
+        })
+    };
+    let microseconds = |ns: f64| style::significant(ns / 1e3);
     let [one, all, metg, side, prepare, first, later] = match &row.figures {
-        Err(_) => std::array::from_fn(|_| NONE.to_owned()),
+        Err(_) => std::array::from_fn(|_| none()),
         Ok(figures) => [
             dispatch(figures.dispatch_one),
             dispatch(figures.dispatch_all),
-            figures.metg.map_or_else(|| "< 1 step".to_owned(), |ns| style::significant(ns / 1e3)),
-            figures
-                .break_even
-                .map_or_else(|| NONE.to_owned(), |side| format!("{0:.0} x {0:.0}", side.ceil())),
-            style::significant(figures.prepare.median / 1e3),
-            style::significant(figures.first.median / 1e3),
-            style::significant(figures.later.median / 1e3),
+            figures.metg.map_or_else(|| "< 1 step".to_owned(), microseconds),
+            figures.break_even.map_or_else(none, |side| format!("{0:.0} x {0:.0}", side.ceil())),
+            microseconds(figures.prepare.median),
+            microseconds(figures.first.median),
+            microseconds(figures.later.median),
         ],
     };
-    [
-        row.strategy.to_owned(),
-        row.threads.to_string(),
-        piece,
-        one,
-        all,
-        metg,
-        side,
-        prepare,
-        first,
-        later,
-    ]
-}
-
-fn dispatch(interval: Option<Interval>) -> String {
-    interval.map_or_else(
-        || NONE.to_owned(),
-        |Interval { median, low, high }| format!("{median:.1} [{low:.1}, {high:.1}]"),
-    )
-}
-
-/// The word for what is computed at once.
-fn piece(granularity: Granularity) -> &'static str {
-    match granularity {
-        Granularity::Pixel => "pixel",
-        Granularity::Row => "row",
-        Granularity::Tile => "tile",
-        Granularity::Band => "band",
-    }
+    let (threads, piece) = (row.threads.to_string(), row.granularity.to_string());
+    [row.strategy.to_owned(), threads, piece, one, all, metg, side, prepare, first, later]
 }
 
 #[derive(Serialize)]
-struct Object<'a> {
+struct OverheadDocument<'a> {
     schema: u32,
     rounds: usize,
     step_ns: f64,
@@ -146,14 +117,14 @@ struct Object<'a> {
     break_even_largest_side: u32,
     noise: &'a Noise,
     machine: &'a Machine,
-    results: Vec<Item<'a>>,
+    results: Vec<OverheadEntry<'a>>,
 }
 
 #[derive(Serialize)]
-struct Item<'a> {
+struct OverheadEntry<'a> {
     strategy: &'a str,
     threads: usize,
-    piece: &'static str,
+    piece: String,
     dispatch_one_ns: Option<Interval>,
     dispatch_all_ns: Option<Interval>,
     metg_ns: Option<f64>,
@@ -164,22 +135,21 @@ struct Item<'a> {
     error: Option<String>,
 }
 
-impl<'a> Item<'a> {
+impl<'a> OverheadEntry<'a> {
     fn new(row: &'a OverheadRow) -> Self {
-        let figures = row.figures.as_ref();
-        let interval = |of: fn(&OverheadFigures) -> Interval| figures.ok().map(of);
+        let figures = row.figures.as_ref().ok();
         Self {
             strategy: row.strategy,
             threads: row.threads,
-            piece: piece(row.granularity),
-            dispatch_one_ns: figures.ok().and_then(|figures| figures.dispatch_one),
-            dispatch_all_ns: figures.ok().and_then(|figures| figures.dispatch_all),
-            metg_ns: figures.ok().and_then(|figures| figures.metg),
-            break_even_side: figures.ok().and_then(|figures| figures.break_even),
-            prepare_ns: interval(|figures| figures.prepare),
-            first_ns: interval(|figures| figures.first),
-            later_ns: interval(|figures| figures.later),
-            error: figures.err().map(ToString::to_string),
+            piece: row.granularity.to_string(),
+            dispatch_one_ns: figures.and_then(|figures| figures.dispatch_one),
+            dispatch_all_ns: figures.and_then(|figures| figures.dispatch_all),
+            metg_ns: figures.and_then(|figures| figures.metg),
+            break_even_side: figures.and_then(|figures| figures.break_even),
+            prepare_ns: figures.map(|figures| figures.prepare),
+            first_ns: figures.map(|figures| figures.first),
+            later_ns: figures.map(|figures| figures.later),
+            error: row.figures.as_ref().err().map(ToString::to_string),
         }
     }
 }
@@ -188,7 +158,8 @@ impl<'a> Item<'a> {
 mod tests {
     use super::*;
     use crate::compare::fixtures::noise;
-    use rayweave_measure::overhead::Failure;
+    use rayweave_contract::Granularity;
+    use rayweave_measure::overhead::{Failure, OverheadFigures};
 
     fn study() -> OverheadStudy {
         let interval = |median| Interval { median, low: median - 1.0, high: median + 1.0 };

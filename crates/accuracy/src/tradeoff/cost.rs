@@ -4,17 +4,21 @@ use super::setting::ARITHMETICS;
 use super::{Setting, Subject, ratio};
 use rayweave_core::{Arithmetic, Formulas, Precision, Scene};
 use rayweave_measure::Interval;
+use serde::Serialize;
 
 /// Ratios of times within a round, of images with 25 rays per pixel and all bounces.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct ArithmeticCost {
     /// The content of the image: "whole scene", or the name of one kind of primitive.
     pub part: &'static str,
     /// Robust over textbook formulas, in `f32`.
+    #[serde(rename = "robust_over_textbook_f32")]
     pub robust_f32: Interval,
     /// Robust over textbook formulas, in `f64`.
+    #[serde(rename = "robust_over_textbook_f64")]
     pub robust_f64: Interval,
     /// `f64` over `f32`, with robust formulas.
+    #[serde(rename = "f64_over_f32_robust")]
     pub f64_robust: Interval,
 }
 

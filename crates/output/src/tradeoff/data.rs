@@ -1,43 +1,42 @@
-//! The study for other programs: what a result is, is said once, for JSON and CSV.
+//! The settings as JSON and CSV, from one definition of a result.
 
 use super::TradeoffView;
-use crate::csv;
-use crate::json;
+use crate::{csv, json};
 use rayweave_accuracy::tradeoff::{ArithmeticCost, TradeoffRow, reference_rays_per_pixel};
-use rayweave_measure::{Interval, Machine};
+use rayweave_measure::Machine;
 use serde::Serialize;
 
-/// It changes when a key changes its meaning or goes.
+/// The schema number of the JSON. It changes when a key is removed or changes its meaning.
 const SCHEMA: u32 = 1;
 
 #[derive(Serialize)]
-struct Object<'a> {
+struct TradeoffDocument<'a> {
     schema: u32,
     scene: &'a str,
     width: u32,
     height: u32,
     rounds: usize,
     machine: &'a Machine,
-    reference: Reference,
-    results: Vec<ResultWithSamples<'a>>,
-    costs: Vec<CostEntry>,
+    reference: ReferenceEntry,
+    results: Vec<SettingWithSamples<'a>>,
+    costs: &'a [ArithmeticCost],
 }
 
 #[derive(Serialize)]
-struct Reference {
+struct ReferenceEntry {
     rays_per_pixel: u32,
     rmse_estimate: f64,
 }
 
 #[derive(Serialize)]
-struct ResultWithSamples<'a> {
+struct SettingWithSamples<'a> {
     #[serde(flatten)]
-    result: Entry,
+    setting: SettingEntry,
     samples_ns: &'a [u64],
 }
 
 #[derive(Serialize)]
-struct Entry {
+struct SettingEntry {
     formulas: String,
     precision: String,
     sampling: String,
@@ -48,7 +47,7 @@ struct Entry {
     speedup: f64,
     speedup_low: f64,
     speedup_high: f64,
-    /// Null for an equal picture.
+    /// Null if the image equals the reference.
     psnr: Option<f64>,
     rmse: f64,
     max_error: f64,
@@ -59,30 +58,23 @@ struct Entry {
     pareto: bool,
 }
 
-#[derive(Serialize)]
-struct CostEntry {
-    part: &'static str,
-    robust_over_textbook_f32: Interval,
-    robust_over_textbook_f64: Interval,
-    f64_over_f32_robust: Interval,
-}
-
 pub(super) fn json(view: &TradeoffView<'_>) -> String {
     let study = view.study;
-    let with_samples = |row| ResultWithSamples { result: entry(row), samples_ns: &row.samples_ns };
-    json::text(&Object {
+    let with_samples =
+        |row| SettingWithSamples { setting: entry(row), samples_ns: &row.samples_ns };
+    json::text(&TradeoffDocument {
         schema: SCHEMA,
         scene: view.scene,
         width: view.width,
         height: view.height,
         rounds: study.rounds,
         machine: view.machine,
-        reference: Reference {
+        reference: ReferenceEntry {
             rays_per_pixel: reference_rays_per_pixel(),
             rmse_estimate: study.reference.uncertainty,
         },
         results: study.rows.iter().map(with_samples).collect(),
-        costs: study.costs.iter().map(cost).collect(),
+        costs: &study.costs,
     })
 }
 
@@ -90,9 +82,9 @@ pub(super) fn csv(view: &TradeoffView<'_>) -> String {
     csv::text(view.study.rows.iter().map(entry))
 }
 
-fn entry(row: &TradeoffRow) -> Entry {
+fn entry(row: &TradeoffRow) -> SettingEntry {
     let TradeoffRow { setting, speedup, error, .. } = row;
-    Entry {
+    SettingEntry {
         formulas: setting.arithmetic.formulas.to_string(),
         precision: setting.arithmetic.precision.to_string(),
         sampling: super::sampling_name(setting),
@@ -111,14 +103,5 @@ fn entry(row: &TradeoffRow) -> Entry {
         arithmetic_rmse: row.arithmetic_rmse,
         sampling_rmse: row.sampling_rmse,
         pareto: row.in_front,
-    }
-}
-
-fn cost(cost: &ArithmeticCost) -> CostEntry {
-    CostEntry {
-        part: cost.part,
-        robust_over_textbook_f32: cost.robust_f32,
-        robust_over_textbook_f64: cost.robust_f64,
-        f64_over_f32_robust: cost.f64_robust,
     }
 }
