@@ -1,4 +1,4 @@
-//! How right a kernel's answers to hard cases are, for people.
+//! The score of a kernel on hard cases, as a table.
 
 use crate::style;
 use rayweave_accuracy::FamilyScore;
@@ -15,9 +15,10 @@ const HEADER: [&str; 9] = [
     "ns\na ray",
 ];
 
-/// A row a family: errors in `f32` ulps of the true `t`; `max / cond` is the largest error over its
-/// condition number, which a stable formula keeps small. `times` has each family's nanoseconds a
-/// ray.
+/// Returns a table with one row for each family of cases.
+///
+/// Errors are in `f32` ulps of the true `t`. `max / cond` is the largest error over its condition
+/// number, which a stable formula keeps small. `times` holds the nanoseconds a ray of each family.
 #[must_use]
 pub fn table(scores: &[FamilyScore], times: &[Option<f64>]) -> String {
     let error = |value: Option<f64>| match value {

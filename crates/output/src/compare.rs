@@ -24,7 +24,7 @@ use rayweave_measure::statistics::ratio_interval;
 use rayweave_measure::{Interval, Machine, Measurement, Noise};
 use serde::{Deserialize, Serialize};
 
-/// The number of the JSON's form. It changes when a key changes its meaning or goes.
+/// The schema number of the JSON. It changes when a key is removed or changes its meaning.
 const SCHEMA: u32 = 2;
 
 /// What was rendered and how: times of the same subject can be compared. All but the last four
@@ -67,21 +67,21 @@ pub struct Record {
     pub rounds: usize,
     /// Whether the measurement was interrupted after these.
     pub interrupted: bool,
-    /// Whether the times are to be doubted because of [other programs](Noise::disturbed).
+    /// Whether [other programs](Noise::disturbed) make the times doubtful.
     pub disturbed: bool,
-    /// The digest of the image that the strategy has to give, in hexadecimal.
+    /// The digest of the reference's image, in hexadecimal.
     pub reference_digest: String,
-    /// The cost of the dearest of `threads` equal ranges of tiles over their mean; known if several
+    /// The largest cost of `threads` equal ranges of tiles over the mean cost; known if several
     /// scenes were compared.
     pub imbalance: Option<f64>,
-    /// The share of the cost that the dearest tile has; known if several scenes were compared.
+    /// The largest cost of a tile as a share of the whole; known if several scenes were compared.
     pub largest_tile: Option<f64>,
     /// The strategy, its samples and figures.
     #[serde(flatten)]
     pub measurement: Measurement,
 }
 
-/// A list of measurements and what holds for all of them: what `--json` writes.
+/// A list of measurements with everything that they share. `--json` writes it.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Results {
     schema: u32,
@@ -89,9 +89,9 @@ pub struct Results {
     pub seed: u64,
     /// The precision that was asked for: half of an interval as a share of its median.
     pub precision_goal: Option<f64>,
-    /// The machine that was measured on.
+    /// The machine that ran the measurement.
     pub machine: Machine,
-    /// What else went on there.
+    /// Other activity on the machine meanwhile.
     pub noise: Noise,
     /// The reference's time without shared samples over its time with them, where both were
     /// measured.
@@ -100,7 +100,7 @@ pub struct Results {
     /// The changes since an earlier list, where there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub changes: Option<Vec<Change>>,
-    /// Of each subject the reference, its control, then the strategies.
+    /// For each subject the reference, its control, then the strategies.
     pub results: Vec<Record>,
     /// The scenes that an interruption left out.
     #[serde(default)]
@@ -111,7 +111,7 @@ pub struct Results {
 }
 
 impl Results {
-    /// Returns the list `results` with what was measured around it.
+    /// Returns a list of `results` with the machine and its noise.
     #[must_use]
     pub fn new(machine: Machine, noise: Noise, results: Vec<Record>) -> Self {
         let mut list = Self {
@@ -130,11 +130,11 @@ impl Results {
         list
     }
 
-    /// Reads the JSON of a list, of this schema or the one before.
+    /// Reads the JSON of a list, of this schema or the previous one.
     ///
     /// # Errors
     ///
-    /// The text is not such a list, or of another schema.
+    /// The text is not such a list, or has another schema.
     pub fn parse(text: &str) -> Result<Self, String> {
         let not_a_list = |e: serde_json::Error| format!("not the JSON of a comparison: {e}");
         let object: serde_json::Value = serde_json::from_str(text).map_err(not_a_list)?;
@@ -150,34 +150,34 @@ impl Results {
         serde_json::from_value(object).map_err(not_a_list)
     }
 
-    /// Returns the list for programs: JSON that docs/compare-json.md describes.
+    /// Returns the list as JSON, which docs/compare-json.md describes.
     #[must_use]
     pub fn json(&self) -> String {
         json::text(self)
     }
 
-    /// Returns the list for spreadsheets: a line of names, then a line for each record, empty where
-    /// there is no figure.
+    /// Returns the list as CSV: a line of names, then a line for each record. A missing figure is
+    /// empty.
     #[must_use]
     pub fn csv(&self) -> String {
         csv::text(self)
     }
 
-    /// Returns the list for a README: tables in Markdown, with the machine.
+    /// Returns the list as tables in Markdown, with the machine.
     #[must_use]
     pub fn markdown(&self) -> String {
         let tables: String = self.groups().map(|group| markdown::text(self, group)).collect();
         if self.has_several_scenes() { scenes::markdown(self) + &tables } else { tables }
     }
 
-    /// Returns the list for people: plain text without colours or a newline at the end. One subject
-    /// has one table; several scenes stand beside each other.
+    /// Returns the list as plain text without colours or a newline at the end: one table for each
+    /// subject, or one table with several scenes side by side.
     #[must_use]
     pub fn table(&self) -> String {
         if self.has_several_scenes() { scenes::text(self) } else { table::text(self) }
     }
 
-    /// Returns whether every strategy gave the reference's image, every time.
+    /// Returns whether every strategy rendered the reference's image every time.
     #[must_use]
     pub fn passed(&self) -> bool {
         self.results.iter().all(|record| record.measurement.passed())
@@ -208,14 +208,14 @@ impl Results {
 }
 
 impl Record {
-    /// Returns what a table calls the row.
+    /// Returns the name of the row in a table.
     fn label(&self) -> String {
         let control = if self.measurement.control { " (control)" } else { "" };
         format!("{}{control}", self.measurement.strategy)
     }
 }
 
-/// Returns the interval that the control's speed-up has: the error of a table.
+/// Returns the interval of the control's speed-up, which shows the error of a table.
 fn control(group: &[Record]) -> Option<Interval> {
     group.iter().find(|record| record.measurement.control)?.measurement.speedup
 }

@@ -1,4 +1,4 @@
-//! Why strategies lose: as tables, JSON, traces and pictures.
+//! The result of `rayweave explain` as tables, as JSON, as a trace and as drawings.
 
 mod json;
 mod map;
@@ -9,6 +9,7 @@ mod tests;
 mod timeline;
 mod trace;
 
+use ExplanationView as Report;
 use plotters::style::RGBColor;
 use rayweave_contract::{Image, ImageError};
 use rayweave_measure::efficiency::Cause;
@@ -18,104 +19,102 @@ use rayweave_measure::timeline::{Timeline, TimelineLane};
 use rayweave_measure::{Machine, Noise};
 use serde::Serialize;
 
-use ExplanationView as Report;
-
-/// An explanation with everything that is needed to read it.
+/// The time breakdown of all strategies, with the scene, the machine and its noise.
 #[derive(Clone, Copy)]
 pub struct ExplanationView<'a> {
     /// The scene's name.
     pub scene: &'a str,
-    /// Of the picture, in pixels.
+    /// Width and height of the image in pixels.
     pub size: (u32, u32),
-    /// The side of a tile, in pixels.
+    /// The side of a tile in pixels.
     pub tile: u32,
-    /// What was measured.
+    /// The measured times.
     pub explanation: &'a Explanation,
-    /// The primary rays of a piece.
+    /// The number of primary rays of a piece.
     pub rays: &'a RayCost<'a>,
-    /// What it was measured on.
+    /// The machine that ran the measurement.
     pub machine: &'a Machine,
-    /// What else went on there.
+    /// Other activity on the machine meanwhile.
     pub noise: &'a Noise,
 }
 
 impl ExplanationView<'_> {
-    /// For people: of each strategy where its thread-time goes, what each thread does, and what
-    /// helps. Without a newline at the end.
+    /// Returns tables for each strategy: where its thread-time goes, what each thread does, and
+    /// what helps. There is no newline at the end.
     #[must_use]
     pub fn text(&self) -> String {
         table::text(self)
     }
 
-    /// For programs: an object of schema 1. Each of its `results` has `strategy`, `threads`,
+    /// Returns a JSON object of schema 1. Each of its `results` has `strategy`, `threads`,
     /// `wall_ns`, `speedup`, `lost_ns`, `losses_ns` with a key for each cause, `unexplained_ns`,
-    /// and what each of the `threads_recorded` did in the quickest of the recorded renderings.
+    /// and the activity of each of the `threads_recorded` in the quickest recorded rendering.
     /// `noise` is that of a comparison, in docs/compare-json.md.
     #[must_use]
     pub fn json(&self) -> String {
         json::text(self)
     }
 
-    /// The time lines in the trace event format, for Perfetto (<https://ui.perfetto.dev>) and
-    /// Chrome's tracing page. Single pixels that a thread computes one after the other in a row are
+    /// Returns the time lines in the trace event format, for Perfetto (<https://ui.perfetto.dev>)
+    /// and Chrome's tracing page. Pixels that a thread computes one after the other in a row are
     /// one slice.
     #[must_use]
     pub fn trace(&self) -> String {
         trace::text(self)
     }
 
-    /// Of a strategy a bar for each thread, as SVG.
+    /// Returns an SVG drawing of a strategy's time line with a bar for each thread.
     ///
     /// # Errors
     ///
-    /// It cannot be drawn.
+    /// The plotting library failed; the message is its own.
     pub fn timeline(&self, row: &ExplainedStrategy) -> Result<String, String> {
-        timeline::svg(row)
+        crate::plot::svg("the time line", |text| timeline::draw(row, text))
     }
 
-    /// Of a strategy the time of each piece a pixel, as SVG with a scale.
+    /// Returns an SVG map of the time that a strategy spent on each pixel, with a scale.
     ///
     /// # Errors
     ///
-    /// It cannot be drawn.
+    /// The plotting library failed; the message is its own.
     pub fn cost(&self, row: &ExplainedStrategy) -> Result<String, String> {
-        map::cost(row, self.size)
+        crate::plot::svg("the map of cost", |text| map::draw(row, self.size, text))
     }
 
-    /// Of a strategy each pixel in the colour that the thread that computed it has in the time
-    /// line.
+    /// Returns an image with each pixel in the colour of the thread that computed it, as in the
+    /// time line.
     ///
     /// # Errors
     ///
-    /// There is no such picture.
+    /// An image of this size cannot exist.
     pub fn owners(&self, row: &ExplainedStrategy) -> Result<Image, ImageError> {
         Ok(map::owners(&row.timeline, Image::new(self.size.0, self.size.1)?))
     }
 }
 
-/// What one thread did in a rendering; in JSON by these names.
+/// The activity of one thread in a rendering. The JSON has these names.
 #[derive(Serialize)]
 struct Thread<'a> {
     name: Option<&'a str>,
-    /// Of its first piece.
+    /// The start of its first piece.
     begin_ns: u64,
-    /// Of its last piece.
+    /// The end of its last piece.
     end_ns: u64,
     busy_ns: u64,
     between_ns: u64,
-    /// Before its first piece and after its last.
+    /// The time before its first piece and after its last.
     idle_ns: u64,
     pieces: usize,
     pixels: u64,
-    /// `None` if they cannot be counted.
+    /// `None` if rays cannot be counted.
     primary_rays: Option<u64>,
     long_gaps: usize,
-    /// Of all of them together.
+    /// The sum of the long gaps.
     long_gaps_ns: u64,
 }
 
 impl<'a> Thread<'a> {
-    /// Those of a row's time line.
+    /// Returns the threads of a strategy's time line.
     fn all(row: &'a ExplainedStrategy, rays: &RayCost<'_>) -> Vec<Self> {
         let of = |lane| Self::of(lane, &row.timeline, row.long_gap_ns, rays);
         row.timeline.lanes.iter().map(of).collect()
@@ -146,21 +145,20 @@ impl<'a> Thread<'a> {
     }
 }
 
-/// The most that a thread computes over the mean of all that there are, in time; 1 is even, the
-/// number of threads is all on one.
+/// Returns the busiest thread's computing time over the mean of all threads: 1 if all compute as
+/// long, the number of threads if only one computes.
 fn imbalance(row: &ExplainedStrategy) -> f64 {
     let busy = || row.timeline.lanes.iter().map(|lane| lane.busy_ns() as f64);
     let mean = busy().sum::<f64>() / row.threads.max(1) as f64;
     if mean > 0.0 { busy().fold(0.0, f64::max) / mean } else { 1.0 }
 }
 
-/// What a thread is called: as it calls itself, or by its place in the order of the first pieces.
+/// Returns the name of a thread, or a name from its place in the order of first pieces.
 fn label(name: Option<&str>, index: usize) -> String {
     name.map_or_else(|| format!("thread {index}"), str::to_owned)
 }
 
-/// A colour a thread, by Okabe and Ito, "Color Universal Design", 2008; they come again after the
-/// eighth.
+/// Returns the colour of a thread, one of eight by Okabe and Ito, "Color Universal Design", 2008.
 fn color(thread: usize) -> RGBColor {
     const COLORS: [RGBColor; 8] = [
         RGBColor(0, 114, 178),
@@ -175,13 +173,13 @@ fn color(thread: usize) -> RGBColor {
     COLORS[thread % COLORS.len()]
 }
 
-/// The same colour, a little darker.
+/// Returns a slightly darker colour.
 fn shaded(RGBColor(red, green, blue): RGBColor) -> RGBColor {
     let [red, green, blue] = [red, green, blue].map(|channel| channel - channel / 5);
     RGBColor(red, green, blue)
 }
 
-/// Of a cause, for a table and for a sentence.
+/// Returns the name of a cause.
 fn name(cause: Cause) -> &'static str {
     match cause {
         Cause::Redundant => "redundant work",

@@ -1,4 +1,4 @@
-//! What more threads would do: as tables, a plot, and for other programs.
+//! The result of `rayweave predict` as tables, as JSON, and as a plot.
 
 mod data;
 mod plot;
@@ -6,61 +6,59 @@ mod table;
 #[cfg(test)]
 mod tests;
 
+use ForecastView as Report;
 use rayweave_measure::{Forecast, Machine, Noise};
 
-use ForecastView as Report;
-
-/// A forecast with everything that is needed to read it.
+/// Predicted and measured speed-ups, with the scene, the machine and its noise.
 #[derive(Clone, Copy, Debug)]
 pub struct ForecastView<'a> {
     /// The scene's name.
     pub scene: &'a str,
-    /// Of the picture, in pixels.
+    /// Width of the image in pixels.
     pub width: u32,
-    /// Of the picture, in pixels.
+    /// Height of the image in pixels.
     pub height: u32,
-    /// The side of a tile, in pixels.
+    /// The side of a tile in pixels.
     pub tile: u32,
-    /// What was predicted, and measured.
+    /// The predictions and the measurements that they are checked with.
     pub forecast: &'a Forecast,
-    /// What it was measured on.
+    /// The machine that ran the measurement.
     pub machine: &'a Machine,
-    /// What else went on there.
+    /// Other activity on the machine meanwhile.
     pub noise: &'a Noise,
 }
 
-/// What a prediction takes for granted.
+/// The assumptions of every prediction.
 const ASSUMPTIONS: [&str; 5] = [
-    "every core is as good as one of this machine, and no thread waits for a core",
-    "beside others a thread is slowed down as by all threads of this machine, however many they are",
-    "memory bandwidth and caches are no limit but for that",
-    "a counter, a lock or a channel costs on many threads what it costs on this machine's, in the order of asking",
-    "threads start one after the other, each as long after the one before as the second after the first here: its waking up \
-     is in that, so many threads start faster",
+    "every core is as fast as this machine's, and every thread has a core",
+    "any number of threads slows each of them down as much as all threads of this machine do",
+    "memory bandwidth and caches set no further limit",
+    "a counter, lock or channel costs as much per use as on this machine, first come, first served",
+    "threads start one by one, as far apart as the first two do here (many threads start faster)",
 ];
 
 impl ForecastView<'_> {
-    /// For people: predictions with the fitted laws, what of them could be checked here, and what
-    /// they assume. Without a newline at the end.
+    /// Returns tables of the predictions with the fitted laws and of the predictions that could be
+    /// checked here, and the assumptions. There is no newline at the end.
     #[must_use]
     pub fn table(&self) -> String {
         table::text(self)
     }
 
-    /// For programs: an object of schema 1, a result a strategy and number of threads, a law a
-    /// strategy. `noise` is that of a comparison, in docs/compare-json.md.
+    /// Returns a JSON object of schema 1 with a result for each strategy and number of threads, and
+    /// the laws of each strategy. `noise` is that of a comparison, in docs/compare-json.md.
     #[must_use]
     pub fn json(&self) -> String {
         data::json(self)
     }
 
-    /// Speed-ups over numbers of threads on logarithmic axes, as SVG: lines predicted, circles
-    /// measured.
+    /// Returns an SVG plot of speed-up over threads on logarithmic axes: predictions are lines,
+    /// measurements are circles.
     ///
     /// # Errors
     ///
-    /// What the plotting library says.
+    /// The plotting library failed; the message is its own.
     pub fn svg(&self) -> Result<String, String> {
-        plot::svg(self)
+        crate::plot::svg("the plot", |text| plot::draw(self, text))
     }
 }

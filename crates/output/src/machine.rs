@@ -1,8 +1,8 @@
-//! The facts about a machine in two lines, as they stand under every result.
+//! The two lines about machine and program that end every result.
 
 use rayweave_measure::Machine;
 
-/// Returns two lines: processor, cores and limits; compiler, kind of build and commit.
+/// Returns one line on processor, cores and limits, and one on compiler, build and commit.
 #[must_use]
 pub fn text(machine: &Machine) -> String {
     let Machine {
@@ -12,7 +12,7 @@ pub fn text(machine: &Machine) -> String {
         machine.quota_cores.map(|cores| format!(", quota {cores} cores")).unwrap_or_default();
     let warning = if profile == "release" { "" } else { " (times mean little)" };
     format!(
-        "machine: {cpu}, {logical_cores} logical cores, {available_threads} available{quota}, {os} {arch}\n\
-         program: {compiler}, {profile} build{warning}, commit {commit}"
+        "machine: {cpu}, {logical_cores} logical cores, {available_threads} available{quota}, \
+         {os} {arch}\nprogram: {compiler}, {profile} build{warning}, commit {commit}"
     )
 }

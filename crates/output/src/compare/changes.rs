@@ -1,4 +1,4 @@
-//! What has changed from one list to another.
+//! The changes from an earlier list of measurements to this one.
 
 use super::table::scene_name;
 use super::{Record, Results, Subject, control, scene_file};
@@ -8,7 +8,7 @@ use rayweave_measure::{Interval, Measurement};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-/// A strategy now and then.
+/// The change of a strategy's time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Change {
     /// The scene's path as the later list has it.
@@ -21,15 +21,15 @@ pub struct Change {
     pub threads: usize,
     /// The time now over the time then; `None` if one of them is missing.
     pub time: Option<Interval>,
-    /// The same of the time over the reference's in the same run: what changed the whole machine
-    /// cancels.
+    /// The same for the time over the reference's time in the same run, so that a change of the
+    /// whole machine cancels out.
     pub relative_time: Option<Interval>,
     /// "slower", "faster", "as before" or "not in both".
     pub verdict: String,
 }
 
-/// Checks whether times of `subjects` can be compared with those of `then`, before any is taken. A
-/// scene may lie in another folder.
+/// Checks whether times of `subjects` can be compared with those of `then`, before any is measured.
+/// A scene may be in another folder.
 ///
 /// # Errors
 ///
@@ -45,11 +45,12 @@ pub fn comparable(then: &Results, subjects: &[Subject]) -> Result<(), String> {
         differences => differences.join(", "),
     };
     Err(format!(
-        "{differences}: use the same scene and options, or measure a new baseline with these (--json)"
+        "{differences}: use the same scene and options, or measure a new baseline with these \
+         (--json)"
     ))
 }
 
-/// Returns whether a record is of this subject, wherever the scene lies.
+/// Returns whether a record is of this subject, wherever the scene file is.
 fn is_same(record: &Record, subject: &Subject) -> bool {
     differences(&record.subject, subject).is_empty()
 }
@@ -130,14 +131,16 @@ fn floats(samples: &[u64]) -> Vec<f64> {
     samples.iter().map(|&ns| ns as f64).collect()
 }
 
-/// Returns the reasons to believe no verdict, one a line.
+/// Returns the reasons to distrust the verdicts, one a line.
 fn doubts(now: &Results, then: &Results) -> Vec<String> {
     let mut lines = Vec::new();
     if let Some(doubt) = doubt(now) {
-        lines.push(format!("This run {doubt}: believe no verdict, measure again."));
+        lines.push(format!("This run {doubt}: do not trust the verdicts, measure again."));
     }
     if let Some(doubt) = doubt(then) {
-        lines.push(format!("The baseline {doubt}: believe no verdict, measure a new baseline."));
+        lines.push(format!(
+            "The baseline {doubt}: do not trust the verdicts, measure a new baseline."
+        ));
     }
     let differs = |group: &[Record]| {
         let then = then.same_group(group).first();
@@ -145,12 +148,12 @@ fn doubts(now: &Results, then: &Results) -> Vec<String> {
     };
     lines.extend(now.groups().filter(|group| differs(group)).map(|group| {
         let scene = scene_name(&group[0]);
-        format!("The baseline drew ANOTHER IMAGE of {scene}: that may be all of the difference.")
+        format!("The baseline is of ANOTHER IMAGE of {scene}, which may explain the difference.")
     }));
     lines
 }
 
-/// Returns the reason why the times of a run are to be doubted, if there is one.
+/// Returns the reason to doubt the times of a run, if there is one.
 fn doubt(results: &Results) -> Option<String> {
     let off = |group: &[Record]| control(group).is_some_and(|control| !control.contains(1.0));
     let causes = [
@@ -183,8 +186,8 @@ pub(super) fn text(results: &Results) -> Option<String> {
         lines.push(style::table(HEADER, group.iter().map(cells), 1..=3));
     }
     lines.push(
-        "\nTwo runs differ by drift, too. The verdict therefore goes by the time relative to the \
-         reference\nof the same run, and for the reference by its own time.\n\
+        "\nTwo runs also differ by drift. The verdict therefore uses the time relative to the \
+         reference\nof the same run; for the reference itself it uses the time.\n\
          Expect one false alarm in twenty rows."
             .to_owned(),
     );
@@ -210,8 +213,8 @@ mod tests {
     use super::super::fixtures::{results, subject};
     use super::*;
 
-    /// The made-up list of six rounds, its reference and control `reference` and its pool `pool`
-    /// times as slow.
+    /// Returns the made-up list with a reference and control `reference` times as slow, and a pool
+    /// `pool` times as slow.
     fn slowed(reference: f64, pool: f64) -> Results {
         let mut results = results();
         let noise = [0.99, 1.0, 1.01, 1.0, 0.995, 1.005, 1.0, 1.0];
@@ -224,10 +227,9 @@ mod tests {
         results
     }
 
-    /// Catches a machine that is slower taken for a strategy that is, and a ratio that is upside
-    /// down.
+    /// Catches a slower machine reported as a slower strategy, and an inverted ratio.
     #[test]
-    fn what_is_slower_and_what_is_the_machine() {
+    fn a_slower_machine_is_not_a_slower_strategy() {
         let then = slowed(1.0, 1.0);
         let expect = |now: Results, reference: &str, pool: &str| {
             let changes = now.compared_with(&then).changes.expect("changes");
@@ -260,9 +262,9 @@ mod tests {
         assert!(told.contains("ANOTHER IMAGE of room"), "{told}");
     }
 
-    /// Catches a verdict that rests on a run which was itself no good.
+    /// Catches a verdict from a run that is not to be trusted itself.
     #[test]
-    fn doubtful_runs_are_told() {
+    fn doubtful_runs_are_reported() {
         let run = |drifted, disturbed| {
             let mut run = slowed(1.0, 1.0);
             run.noise.disturbed = disturbed;
@@ -274,7 +276,7 @@ mod tests {
         };
         let told = |then: &Results, now: Results| {
             let text = now.compared_with(then).table();
-            let lines = text.lines().filter(|line| line.contains("believe no verdict"));
+            let lines = text.lines().filter(|line| line.contains("do not trust the verdicts"));
             lines.map(str::to_owned).collect::<Vec<_>>()
         };
         let good = || run(false, false);
@@ -285,9 +287,10 @@ mod tests {
             (true, true, "was disturbed and has a control whose interval does not contain 1"),
         ] {
             let bad = || run(drifted, disturbed);
-            let then = format!("The baseline {why}: believe no verdict, measure a new baseline.");
+            let advice = "do not trust the verdicts, measure";
+            let then = format!("The baseline {why}: {advice} a new baseline.");
             assert_eq!(told(&bad(), good()), [then]);
-            let now = format!("This run {why}: believe no verdict, measure again.");
+            let now = format!("This run {why}: {advice} again.");
             assert_eq!(told(&good(), bad()), [now]);
         }
     }

@@ -1,10 +1,10 @@
-//! The list for spreadsheets: every line stands for itself.
+//! The list as CSV. Every line repeats what its record needs, so that it can be read alone.
 
 use super::{Record, Results};
 use crate::json;
 use serde_json::Value;
 
-/// The keys whose value is a ratio with its interval: three columns each.
+/// The keys of ratios with an interval, which have three columns each.
 const INTERVALS: [&str; 2] = ["speedup", "cold_speedup"];
 
 /// The keys of the machine that each line repeats.
@@ -17,16 +17,16 @@ pub(super) fn text(results: &Results) -> String {
     for (number, line) in lines.enumerate() {
         let (names, values): (Vec<String>, Vec<String>) = line.into_iter().unzip();
         if number == 0 {
-            writer.write_record(names).expect("memory takes everything");
+            writer.write_record(names).expect("memory accepts everything");
         }
         writer.write_record(values).expect("every record has the same keys");
     }
-    let bytes = writer.into_inner().expect("memory takes everything");
-    String::from_utf8(bytes).expect("text in, text out")
+    let bytes = writer.into_inner().expect("memory accepts everything");
+    String::from_utf8(bytes).expect("CSV of text is text")
 }
 
-/// Returns name and value of each column: the record's keys without its lists of samples, of which
-/// the number is enough here, and the machine's.
+/// Returns name and value of each column: the record's keys and some of the machine's. Of the lists
+/// of samples there is only the number.
 fn cells(record: &Record, machine: &Value) -> Vec<(String, String)> {
     let mut cells = Vec::new();
     for (key, value) in json::value(record).as_object().into_iter().flatten() {

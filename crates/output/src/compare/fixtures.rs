@@ -1,5 +1,5 @@
-//! A made-up list for tests: a reference, its control, a pool, a queue that drew a wrong image, and
-//! one whose threads could not be started.
+//! A made-up list for tests: a reference, its control, a pool, a queue that rendered a wrong image,
+//! and a strategy whose threads could not be started.
 
 use super::*;
 use rayweave_contract::Image;
@@ -12,8 +12,8 @@ pub(super) fn around(median: f64) -> Interval {
     Interval { median, low: median - 0.04, high: median + 0.06 }
 }
 
-/// A row of two rounds: the cold rendering takes a quarter more; two threads compute nearly all of
-/// the time; each of 500 x 400 pixels takes 4.38 rays, of which 4 would have been enough.
+/// Returns a row of two rounds. The cold rendering takes a quarter more time, two threads compute
+/// nearly all of the time, and each of 500 x 400 pixels takes 4.38 rays where 4 would be enough.
 pub(crate) fn row(strategy: &str, threads: usize, starts_threads: &str, ns: u64) -> Measurement {
     let speedup = 2e9 / ns as f64;
     Measurement {
@@ -44,7 +44,7 @@ pub(crate) fn row(strategy: &str, threads: usize, starts_threads: &str, ns: u64)
     }
 }
 
-/// The row without what follows from its samples.
+/// Returns the row without the figures that follow from its samples.
 fn without_figures(row: Measurement) -> Measurement {
     Measurement {
         median_ns: None,
@@ -59,7 +59,7 @@ fn without_figures(row: Measurement) -> Measurement {
     }
 }
 
-/// The same row after its threads failed in the third round.
+/// Returns the row after its threads failed in the third round.
 pub(super) fn failed(row: Measurement, error: &str) -> Measurement {
     Measurement { error: Some(error.to_owned()), ..without_figures(row) }
 }
@@ -144,7 +144,7 @@ pub(crate) fn machine() -> Machine {
     }
 }
 
-/// 1 % of two cores for ten seconds.
+/// Returns the noise of ten seconds in which other programs used 1 % of the machine.
 pub(crate) fn noise() -> Noise {
     Noise {
         wall_s: 10.0,

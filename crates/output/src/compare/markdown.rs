@@ -1,10 +1,11 @@
-//! The list for a README.
+//! The list as tables in Markdown.
 
 use super::table::{heading, milliseconds};
 use super::{Record, Results};
 use crate::{machine, style};
 
-const HEADER: &str = "| strategy | threads | median ms | speed-up [95 % interval] | efficiency | cold ms |\n\
+const HEADER: &str = "| strategy | threads | median ms | speed-up [95 % interval] | efficiency | \
+                      cold ms |\n\
                       |---|--:|--:|--:|--:|--:|\n";
 
 /// Returns the table of one subject. It ends with a newline.

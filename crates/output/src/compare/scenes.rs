@@ -1,5 +1,5 @@
-//! The list as one table with a column for each scene, and a sentence on each: which strategy wins
-//! and why.
+//! The list as one table with a column for each scene, and a sentence for each scene on which
+//! strategy wins and why.
 
 use super::table::scene_name;
 use super::{Record, Results, changes, markdown};
@@ -9,8 +9,7 @@ use rayweave_contract::{Granularity, Scheduling};
 /// The imbalance below which the cost counts as even.
 const EVEN: f64 = 1.1;
 
-/// The time below which an image counts as nearly free: starting a few threads takes a percent of
-/// it.
+/// The time of an image below which starting a few threads takes a percent of it or more.
 const FREE_NS: u64 = 10_000_000;
 
 pub(super) fn text(results: &Results) -> String {
@@ -19,7 +18,7 @@ pub(super) fn text(results: &Results) -> String {
     let header: Vec<String> = header.into_iter().chain(names(&groups)).collect();
     let rows = rows(&groups, |best| format!("* {best}"));
     let mut lines = vec![
-        "speed-up over the reference of the same scene [95 % interval]; * the highest of a scene"
+        "speed-up over the reference of the same scene [95 % interval]; *: highest of the scene"
             .to_owned(),
         String::new(),
         style::table(header, rows.into_iter(), 1..=1 + groups.len()),
@@ -42,7 +41,7 @@ fn names(groups: &[&[Record]]) -> Vec<String> {
     groups.iter().map(|group| scene_name(&group[0]).to_owned()).collect()
 }
 
-/// Returns a sentence on each scene, and what is to be doubted.
+/// Returns a sentence for each scene, and the reasons to doubt its figures.
 fn notes(results: &Results, groups: &[&[Record]]) -> Vec<String> {
     let mut lines: Vec<String> = groups.iter().map(|group| why(group)).collect();
     let disturbed = groups.iter().filter(|group| group[0].disturbed);
@@ -65,8 +64,8 @@ fn notes(results: &Results, groups: &[&[Record]]) -> Vec<String> {
     lines
 }
 
-/// Returns each row's name, its threads and its speed-up in each scene, the highest of a scene
-/// `marked`.
+/// Returns name, threads and speed-up in each scene of each row. `marked` marks the highest
+/// speed-up of a scene.
 fn rows(groups: &[&[Record]], marked: impl Fn(String) -> String) -> Vec<Vec<String>> {
     let cell = |group: &&[Record], wanted: &Record| {
         let alike = |record: &&Record| {
@@ -99,7 +98,7 @@ fn best(group: &[Record], which: impl Fn(&Record) -> bool) -> Option<&Record> {
     records.max_by(|a, b| median(a).unwrap_or_default().total_cmp(&median(b).unwrap_or_default()))
 }
 
-/// Returns a sentence or two: who wins, and which property of the cost makes the difference.
+/// Returns the winner of a scene, and the property of the cost that makes the difference.
 fn why(group: &[Record]) -> String {
     let name = scene_name(&group[0]);
     let speedup = |record: &Record| record.measurement.speedup;
@@ -114,27 +113,28 @@ fn why(group: &[Record]) -> String {
     let certain: Vec<&str> = certain.map(|row| &*row.measurement.strategy).collect();
     let strategy = &winner.measurement.strategy;
     let verdict = if std::ptr::eq(winner, &raw const group[0]) {
-        format!("no strategy pays, {strategy} is first")
+        format!("no strategy pays off, {strategy} is fastest")
     } else if certain.is_empty() {
-        format!("no strategy is certainly faster than one thread, {strategy} comes first")
+        format!("no strategy is certainly faster than one thread; {strategy} has the best median")
     } else if won.low <= 1.0 {
-        format!("{strategy} comes first; certainly faster than one thread: {}", certain.join(", "))
+        let certain = certain.join(", ");
+        format!("{strategy} has the best median; certainly faster than one thread: {certain}")
     } else {
         let scheduling = scheduling(&winner.measurement.scheduling);
-        format!("{strategy} ({scheduling}) is first, with {as_good} more within the intervals")
+        format!("{strategy} ({scheduling}) is fastest; {as_good} others overlap its interval")
     };
     let mut parts = vec![format!("{name}: {verdict}")];
     parts.extend(cost(group));
     if let Some(ns) = group[0].measurement.median_ns.filter(|&ns| ns < FREE_NS) {
         parts.push(format!(
-            "all pixels take {:.2} ms, so starting threads and scheduling count",
+            "the whole image takes {:.2} ms, so starting threads and scheduling matter",
             ns as f64 / 1e6
         ));
     }
     parts.join("; ") + "."
 }
 
-/// Returns what the cost of the tiles allows the largest number of threads.
+/// Returns the limits that the cost of the tiles sets to the largest number of threads.
 fn cost(group: &[Record]) -> Vec<String> {
     let Some(record) = group.iter().max_by_key(|record| record.measurement.threads) else {
         return Vec::new();
@@ -148,15 +148,15 @@ fn cost(group: &[Record]) -> Vec<String> {
         });
         let equal = equal.and_then(|record| record.measurement.speedup);
         let measured =
-            equal.map(|equal| format!(", {:.2} was measured", equal.median)).unwrap_or_default();
+            equal.map(|equal| format!(" (measured: {:.2})", equal.median)).unwrap_or_default();
         let most = threads as f64 / imbalance;
         parts.push(if imbalance < EVEN {
             let percent = (imbalance - 1.0) * 100.0;
-            format!("the cost is even, equal shares of tiles differ by {percent:.0} %")
+            format!("the cost is even: equal shares of tiles differ by {percent:.0} %")
         } else {
             format!(
-                "equal shares of tiles: max over mean cost is {imbalance:.2}, so at most \
-                 {most:.2}{measured}"
+                "equal shares of tiles have {imbalance:.2} as maximum over mean cost and allow at \
+                 most {most:.2}{measured}"
             )
         });
     }
@@ -174,10 +174,10 @@ fn cost(group: &[Record]) -> Vec<String> {
 fn scheduling(word: &str) -> &'static str {
     match word {
         "static" => "equal shares",
-        "guided" => "ever smaller chunks to whoever is free",
-        "work-stealing" => "shares, and half of another's to who is idle",
-        "recursive-split" => "halves of the range to who is idle",
-        _ => "the next piece to whoever is free",
+        "guided" => "shrinking chunks to free threads",
+        "work-stealing" => "equal shares; idle threads steal half of another's",
+        "recursive-split" => "halves of the range to idle threads",
+        _ => "the next piece to a free thread",
     }
 }
 
@@ -187,8 +187,8 @@ mod tests {
     use super::*;
     use rayweave_measure::Interval;
 
-    /// The made-up list on two scenes: one even, one with three quarters of the cost in one tile,
-    /// where the pool loses to the reference.
+    /// Returns the made-up list on two scenes: an even one, and one with three quarters of the cost
+    /// in one tile, where the pool loses to the reference.
     fn two_scenes() -> Results {
         let (mut even, mut corner) = (records(), records());
         for (group, scene, costs) in [
@@ -199,7 +199,7 @@ mod tests {
                 record.subject.scene = scene.to_owned();
                 (record.imbalance, record.largest_tile) = (Some(costs.0), Some(costs.1));
             }
-            // Of the largest number of threads, which the bound is for.
+            // The limits are for the largest number of threads.
             group[2].measurement.threads = 9000;
             group[2].measurement.scheduling = "static".to_owned();
         }
@@ -227,18 +227,18 @@ mod tests {
         );
         assert_eq!(
             line("even:"),
-            "even: pool (equal shares) is first, with 0 more within the intervals; the cost is even, equal shares \
-             of tiles differ by 0 %."
+            "even: pool (equal shares) is fastest; 0 others overlap its interval; the cost is \
+             even: equal shares of tiles differ by 0 %."
         );
         assert_eq!(line("INTERRUPTED"), "INTERRUPTED before it was measured: later.toml.");
-        // 9000 threads and a tile more than that: the first range is the dear tile alone, 3/4 of
-        // all.
+        // With one tile more than 9000 threads the first range is the costly tile alone: 3/4 of
+        // the cost.
         assert_eq!(
             line("corner:"),
-            "corner: no strategy pays, sequential is first; \
-             equal shares of tiles: max over mean cost is 6750.00, so at most 1.33, 0.90 was measured; one tile has \
-             75 % of the cost, so whole tiles allow at most 1.33; all pixels take 5.00 ms, so starting threads and \
-             scheduling count."
+            "corner: no strategy pays off, sequential is fastest; equal shares of tiles have \
+             6750.00 as maximum over mean cost and allow at most 1.33 (measured: 0.90); one tile \
+             has 75 % of the cost, so whole tiles allow at most 1.33; the whole image takes 5.00 \
+             ms, so starting threads and scheduling matter."
         );
     }
 
@@ -248,13 +248,14 @@ mod tests {
         let mut group = records();
         group[2].measurement.speedup = Some(Interval { median: 1.2, low: 0.9, high: 1.6 });
         let told = why(&group);
-        let expected = ": no strategy is certainly faster than one thread, pool comes first.";
+        let expected =
+            ": no strategy is certainly faster than one thread; pool has the best median.";
         assert!(told.ends_with(expected), "{told}");
 
         // Another is, though its median is lower.
         group[3].measurement.speedup = Some(Interval { median: 1.1, low: 1.05, high: 1.2 });
         let told = why(&group);
-        let expected = ": pool comes first; certainly faster than one thread: queue.";
+        let expected = ": pool has the best median; certainly faster than one thread: queue.";
         assert!(told.ends_with(expected), "{told}");
     }
 
@@ -262,7 +263,8 @@ mod tests {
     fn markdown_begins_with_who_wins_where() {
         let markdown = two_scenes().markdown();
         let (text, lines) = (two_scenes().table(), markdown.lines().collect::<Vec<_>>());
-        let head = "speed-up over the reference of the same scene [95 % interval]; the highest of a scene in bold";
+        let head = "speed-up over the reference of the same scene [95 % interval]; the highest of \
+                    a scene in bold";
         assert_eq!(lines[..2], [head, ""]);
         assert_eq!(lines[2..4], ["| strategy | threads | even | corner |", "|---|--:|--:|--:|"]);
         assert_eq!(lines[4], "| sequential | 1 | 1.00 [0.96, 1.06] | **1.00 [0.96, 1.06]** |");

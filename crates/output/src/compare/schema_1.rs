@@ -1,10 +1,10 @@
-//! Lists that an earlier version wrote: schema 1 had an object for each subject, its settings
-//! beside its results.
+//! Lists of an earlier version. Schema 1 had an object for each subject, with its settings and
+//! results.
 
 use serde::de::Error;
 use serde_json::{Map, Value, json};
 
-/// Returns the list that says the same in schema 2.
+/// Returns the same list in schema 2.
 pub(super) fn upgraded(mut file: Value) -> Result<Value, serde_json::Error> {
     let unshared = file.as_object_mut().and_then(|file| file.remove("unshared"));
     let objects = match file.get_mut("comparisons").map(Value::take) {
@@ -19,7 +19,7 @@ pub(super) fn upgraded(mut file: Value) -> Result<Value, serde_json::Error> {
         results.extend(old.iter().map(|result| record(object, result)));
     }
     let first = objects.first().unwrap_or(&Value::Null);
-    // Its changes are left out: they can be computed again.
+    // Changes are left out, because they can be computed again.
     Ok(json!({
         "schema": super::SCHEMA,
         "seed": first["seed"],
@@ -51,7 +51,7 @@ fn record(object: &Value, result: &Value) -> Value {
         _ => "none",
     };
     record.insert("starts_threads".to_owned(), starts_threads.into());
-    // Lists that are not known were null.
+    // Unknown lists were null.
     let list = |list: &Value| if list.is_null() { json!([]) } else { list.clone() };
     record.insert("cpu_samples_ns".to_owned(), list(&result["cpu_samples_ns"]));
     let cold = &result["one_shot"];

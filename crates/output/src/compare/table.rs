@@ -20,7 +20,7 @@ const HEADER: [&str; 10] = [
 /// The columns of numbers, which line up at their right.
 const NUMBERS: std::ops::RangeInclusive<usize> = 1..=7;
 
-/// The distance from 1 to which the control's interval may reach before the table warns.
+/// The distance from 1 that the control's interval may reach before the table warns.
 const TELLING: f64 = 0.05;
 
 /// The cell without a figure.
@@ -37,7 +37,7 @@ pub(super) fn text(results: &Results) -> String {
     lines.extend(legend(&results.results));
     lines.extend(results.sharing_speedup.map(|gain| {
         format!(
-            "sharing: without it {} takes {} times as long; both tables are of the same rounds.",
+            "sharing: without it {} takes {} times as long, in the same rounds.",
             reference(&results.results),
             style::interval(gain)
         )
@@ -140,7 +140,7 @@ pub(super) fn computed(subject: &Subject) -> String {
         _ => "samples not shared",
     };
     let accel = match (&*subject.formulas, &*subject.accel) {
-        ("textbook", "auto") => "none, as the textbook's formulas need it",
+        ("textbook", "auto") => "none (the textbook formulas allow no other)",
         (_, accel) => accel,
     };
     format!("computed: {lanes}, {samples}, acceleration {accel}")
@@ -154,7 +154,7 @@ pub(crate) fn complaint(row: &Measurement) -> Option<String> {
     match (&row.error, row.digest) {
         (Some(error), _) => Some(format!("{who}: failed after {samples} samples: {error}")),
         (None, Some(digest)) if !row.identical => Some(format!(
-            "{who}: a wrong image, digest {}, after {samples} right ones",
+            "{who}: wrong image (digest {}) after {samples} correct ones",
             digest.short()
         )),
         _ => None,
@@ -165,13 +165,15 @@ pub(crate) fn complaint(row: &Measurement) -> Option<String> {
 fn legend(records: &[Record]) -> [String; 4] {
     let reference = reference(records);
     [
-        "median: of second renderings, each in a process of its own; threads started \"before\" are not in it."
+        "median: time of the second rendering in each process, without threads started \"before\"."
             .to_owned(),
-        "cold: preparing and the first rendering of that process. All images are verified, untimed.".to_owned(),
+        "cold: preparation and first rendering in each process. All images are verified, untimed."
+            .to_owned(),
         format!(
-            "speed-up: time of {reference} over the row's, median over the rounds. Serial fraction: Karp and Flatt."
+            "speed-up: time of {reference} over the row's, median over rounds. \
+             Serial fraction: Karp and Flatt."
         ),
-        "rays: primary ones, counted in the warm-up; +: more than the whole image as a single tile would need."
+        "rays: primary rays, counted in the warm-up; +: more than the image needs as a single tile."
             .to_owned(),
     ]
 }
@@ -182,25 +184,25 @@ fn control_line(group: &[Record], control: Interval) -> String {
     let far = (control.high - 1.0).max(1.0 - control.low);
     let (wide, percent) = (far > TELLING, far * 100.0);
     let verdict = match (control.contains(1.0), wide) {
-        (true, false) => "as it should be, 1 is in it.".to_owned(),
-        (true, true) => format!("1 is in it, but it reaches {percent:.0} % from there."),
-        (false, _) => "1 is not in it: measure again.\n\
-                       Chance alone keeps it out of at most one quiet run in twenty."
+        (true, false) => "contains 1, as it should.".to_owned(),
+        (true, true) => format!("contains 1, but reaches {percent:.0} % from it."),
+        (false, _) => "does not contain 1: measure again.\n\
+                       On a quiet machine at most one run in twenty does this by chance."
             .to_owned(),
     };
     let note = if wide {
         format!(
-            "\nBelieve no difference between rows below {percent:.0} %: measure longer (--time-limit, --precision-goal), \
-             or on a quieter machine."
+            "\nDo not trust differences between rows below {percent:.0} %: measure longer \
+             (--time-limit,\n--precision-goal) or on a quieter machine."
         )
     } else if control.contains(1.0) {
-        "\nThat much is order and drift, of one thread; to tell rows apart compare their own intervals."
+        "\nIt shows order and drift on one thread. To tell rows apart, compare their own intervals."
             .to_owned()
     } else {
         String::new()
     };
     format!(
-        "control: {reference} over itself is {}; {verdict}{note}",
+        "control: {reference} over itself is {}, which {verdict}{note}",
         style::precise_interval(control)
     )
 }
@@ -212,9 +214,9 @@ fn goal_line(group: &[Record], goal: f64) -> String {
         0 => format!("goal: each speed-up is known to +-{:.3} % or better.", goal * 100.0),
         missed => {
             let why = if group[0].interrupted {
-                "it was interrupted"
+                "the run was interrupted"
             } else {
-                "time was up. Give more, --time-limit SECONDS"
+                "the time limit was reached; raise it with --time-limit SECONDS"
             };
             format!("goal: {missed} speed-ups are not known to +-{:.3} %: {why}.", goal * 100.0)
         }
@@ -236,34 +238,36 @@ mod tests {
     use super::super::fixtures::results;
     use super::*;
 
-    /// Catches a control that reassures however little it tells.
+    /// Catches a control that reassures although its interval is wide.
     #[test]
-    fn a_control_says_what_is_to_be_believed() {
+    fn a_control_says_which_differences_to_trust() {
         let results = results();
         let told =
             |median, low, high| control_line(&results.results, Interval { median, low, high });
-        assert_eq!(
-            told(1.0, 0.951, 1.049),
-            "control: sequential over itself is 1.000 [0.951, 1.049]; as it should be, 1 is in it.\n\
-             That much is order and drift, of one thread; to tell rows apart compare their own intervals."
-        );
-        assert_eq!(
-            told(0.97, 0.952, 0.98),
-            "control: sequential over itself is 0.970 [0.952, 0.980]; 1 is not in it: measure again.\n\
-             Chance alone keeps it out of at most one quiet run in twenty."
-        );
-        assert_eq!(
-            told(1.0, 0.939, 1.11),
-            "control: sequential over itself is 1.000 [0.939, 1.110]; 1 is in it, but it reaches 11 % from there.\n\
-             Believe no difference between rows below 11 %: measure longer (--time-limit, --precision-goal), or on a \
-             quieter machine."
-        );
-        assert_eq!(
-            told(0.8, 0.7, 0.91),
-            "control: sequential over itself is 0.800 [0.700, 0.910]; 1 is not in it: measure again.\n\
-             Chance alone keeps it out of at most one quiet run in twenty.\n\
-             Believe no difference between rows below 30 %: measure longer (--time-limit, --precision-goal), or on a \
-             quieter machine."
-        );
+        let distrust = |percent: u32| {
+            format!(
+                "\nDo not trust differences between rows below {percent} %: measure longer \
+                 (--time-limit,\n--precision-goal) or on a quieter machine."
+            )
+        };
+        let again = "does not contain 1: measure again.\n\
+                     On a quiet machine at most one run in twenty does this by chance.";
+        let good = "contains 1, as it should.\n\
+                    It shows order and drift on one thread. \
+                    To tell rows apart, compare their own intervals.";
+        for ((median, low, high), interval, expected) in [
+            ((1.0, 0.951, 1.049), "1.000 [0.951, 1.049]", good.to_owned()),
+            ((0.97, 0.952, 0.98), "0.970 [0.952, 0.980]", again.to_owned()),
+            (
+                (1.0, 0.939, 1.11),
+                "1.000 [0.939, 1.110]",
+                "contains 1, but reaches 11 % from it.".to_owned() + &distrust(11),
+            ),
+            ((0.8, 0.7, 0.91), "0.800 [0.700, 0.910]", again.to_owned() + &distrust(30)),
+        ] {
+            let expected =
+                format!("control: sequential over itself is {interval}, which {expected}");
+            assert_eq!(told(median, low, high), expected);
+        }
     }
 }

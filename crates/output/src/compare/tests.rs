@@ -5,13 +5,13 @@ use super::fixtures::{
 };
 use super::*;
 
-/// The list with its digests called by what their images are.
+/// Replaces the digests by the names of their images.
 fn without_digests(text: &str) -> String {
     text.replace(&digest(1.0).short(), "RIGHT").replace(&digest(0.5).short(), "WRONG")
 }
 
-/// The made-up list with and without shared samples. Without them the reference takes three times
-/// as long, and the pool fails.
+/// Returns the made-up list with and without shared samples. Without them the reference takes three
+/// times as long, and the pool fails.
 fn both() -> Results {
     let mut unshared = records();
     unshared.truncate(3);
@@ -35,11 +35,12 @@ pool                        2    1026  1282  1.95 [1.91, 2.01]        97 %     0
 queue                       2       -     -                  -           -         -  4.4/px +9.5 %  in the time    NO
 many, "too" many         9000       -     -                  -           -         -              -  in the time    failed
 
-queue, 2 threads: a wrong image, digest WRONG, after 2 right ones
+queue, 2 threads: wrong image (digest WRONG) after 2 correct ones
 many, "too" many, 9000 threads: failed after 0 samples: cannot start 9000 threads
 computed: 8 rays side by side, samples shared, acceleration auto
-control: sequential over itself is 0.995 [0.955, 1.055]; 1 is in it, but it reaches 6 % from there.
-Believe no difference between rows below 6 %: measure longer (--time-limit, --precision-goal), or on a quieter machine.
+control: sequential over itself is 0.995 [0.955, 1.055], which contains 1, but reaches 6 % from it.
+Do not trust differences between rows below 6 %: measure longer (--time-limit,
+--precision-goal) or on a quieter machine.
 "#;
 
 const UNSHARED: &str = r#"
@@ -54,20 +55,24 @@ pool                        2       -     -                  -           -      
 
 pool, 2 threads: failed after 2 samples: gone
 computed: 8 rays side by side, samples not shared, acceleration auto
-control: sequential over itself is 0.995 [0.955, 1.055]; 1 is in it, but it reaches 6 % from there.
-Believe no difference between rows below 6 %: measure longer (--time-limit, --precision-goal), or on a quieter machine.
+control: sequential over itself is 0.995 [0.955, 1.055], which contains 1, but reaches 6 % from it.
+Do not trust differences between rows below 6 %: measure longer (--time-limit,
+--precision-goal) or on a quieter machine.
 "#;
 
 const LEGEND: &str = r#"
-median: of second renderings, each in a process of its own; threads started "before" are not in it.
-cold: preparing and the first rendering of that process. All images are verified, untimed.
-speed-up: time of sequential over the row's, median over the rounds. Serial fraction: Karp and Flatt.
-rays: primary ones, counted in the warm-up; +: more than the whole image as a single tile would need.
+median: time of the second rendering in each process, without threads started "before".
+cold: preparation and first rendering in each process. All images are verified, untimed.
+speed-up: time of sequential over the row's, median over rounds. Serial fraction: Karp and Flatt.
+rays: primary rays, counted in the warm-up; +: more than the image needs as a single tile.
 "#;
 
-const SHARING: &str = "sharing: without it sequential takes 3.00 [3.00, 3.00] times as long; both tables are of the same rounds.\n";
+const SHARING: &str =
+    "sharing: without it sequential takes 3.00 [3.00, 3.00] times as long, in the same rounds.\n";
 
-const MACHINE: &str = "noise: others had 1.0 % of the machine; 0.1 s of it other machines on the same host; 34 involuntary switches; 2400 to 3600 MHz.
+const MACHINE: &str = "noise: other programs used 1.0 % of the machine; \
+other virtual machines on the host took 0.1 s of it; 34 involuntary context switches; 2400 to 3600 \
+MHz.
 machine: A CPU, 8 logical cores, 2 available, quota 1.5 cores, linux x86_64
 program: rustc 1.0, release build, commit 0123456789ab";
 
@@ -86,16 +91,17 @@ fn table_is_plain_text() {
     assert!(text.lines().all(|line| line == line.trim_end()), "{text}");
 }
 
-/// Catches a disturbance that only the figures show, and a goal that is said to be met.
+/// Catches a disturbance that only the figures show, and a goal that is wrongly reported as met.
 #[test]
-fn what_is_to_be_doubted_is_told() {
+fn doubtful_figures_are_reported() {
     let disturbed =
         Noise { share_of_others: Some(0.25), throttled: Some(3), disturbed: true, ..noise() };
-    let told = "noise: others had 25.0 % of the machine; 0.1 s of it other machines on the same host; stopped 3 times \
-                by the group's limit; 34 involuntary switches; 2400 to 3600 MHz.\nDISTURBED: measure again when the \
-                machine is quiet.";
-    assert_eq!(crate::noise::text(&disturbed), told);
-    assert_eq!(crate::noise::text(&Noise::default()), "noise: this system does not tell.");
+    let expected = "noise: other programs used 25.0 % of the machine; other virtual machines on \
+                    the host took 0.1 s of it; the CPU quota stopped this program 3 times; 34 \
+                    involuntary context switches; 2400 to 3600 MHz.\n\
+                    DISTURBED: measure again when the machine is quiet.";
+    assert_eq!(crate::noise::text(&disturbed), expected);
+    assert_eq!(crate::noise::text(&Noise::default()), "noise: unknown on this system.");
 
     let goal = |goal, interrupted| {
         let mut results = results();
@@ -106,13 +112,13 @@ fn what_is_to_be_doubted_is_told() {
     assert!(!goal(None, false).contains("goal:"));
     let met = "goal: each speed-up is known to +-6.000 % or better.";
     assert!(goal(Some(0.06), false).contains(met));
-    // The half of 0.1 is 5 % of the reference's speed-up, a little more of its control's, and 2.6 %
-    // of the pool's.
+    // Half of 0.1 is 5 % of the reference's speed-up, a little more of its control's, and 2.6 % of
+    // the pool's.
     let missed = "goal: 2 speed-ups are not known to +-4.000 %: ";
-    assert!(goal(Some(0.04), false).contains(&format!("{missed}time was up.")));
+    assert!(goal(Some(0.04), false).contains(&format!("{missed}the time limit was reached")));
     let text = goal(Some(0.04), true);
     assert!(text.contains("; interrupted after 2 interleaved rounds, digest "), "{text}");
-    assert!(text.contains(&format!("{missed}it was interrupted.")), "{text}");
+    assert!(text.contains(&format!("{missed}the run was interrupted.")), "{text}");
 }
 
 #[test]
@@ -174,9 +180,9 @@ fn what_is_written_is_read() {
     assert_eq!((read.noise, read.sharing_speedup), (written.noise, written.sharing_speedup));
 }
 
-/// Catches a list of the schema before of which a part is lost.
+/// Catches a part of a list in the previous schema that gets lost.
 #[test]
-fn the_schema_before_is_read() {
+fn the_previous_schema_is_read() {
     let then = r#"{
         "schema": 1, "scene": "room", "width": 500, "height": 400, "antialiasing": 2,
         "sampling": "lattice", "adaptive": false, "formulas": "robust", "precision": "f32",
@@ -309,5 +315,5 @@ fn execution_in_words() {
     assert_eq!(of(&|s| (s.adaptive, s.antialiasing) = (true, 0)), nothing);
     assert_eq!(of(&|s| s.sampling = "importance".to_owned()), nothing);
     let textbook = of(&|s| s.formulas = "textbook".to_owned());
-    assert!(textbook.ends_with("acceleration none, as the textbook's formulas need it"));
+    assert!(textbook.ends_with("acceleration none (the textbook formulas allow no other)"));
 }

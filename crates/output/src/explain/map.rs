@@ -1,24 +1,25 @@
-//! Pictures in which a pixel shows who computed it, or what it cost.
+//! Images in which each pixel shows the thread that computed it, or its time.
 
 use super::color;
+use crate::plot::Drawn;
 use plotters::prelude::*;
 use rayweave_contract::{Image, Rect};
 use rayweave_measure::explanation::ExplainedStrategy;
 use rayweave_measure::timeline::{Piece, Timeline};
 
-/// Of the drawing, in pixels: its longer side without the frame.
+/// The longer side of the drawing in pixels, without the frame.
 const SIDE: u32 = 800;
 
-/// Title, axes and scale, in pixels.
+/// Width and height of title, axes and scale in pixels.
 const FRAME: (u32, u32) = (190, 110);
 
-/// Fewer rectangles than that can be looked at quickly.
+/// The largest number of rectangles that a viewer draws quickly.
 const MAX_CELLS: u64 = 20_000;
 
-/// Steps of the scale.
+/// The number of colours in the scale.
 const STEPS: u32 = 64;
 
-/// From little to much: every fourth part of "viridis" by Smith and van der Walt, 2015.
+/// Five colours of "viridis" by Smith and van der Walt, 2015, for the shortest to the longest time.
 const VIRIDIS: [[f64; 3]; 5] = [
     [68.0, 1.0, 84.0],
     [59.0, 82.0, 139.0],
@@ -27,33 +28,31 @@ const VIRIDIS: [[f64; 3]; 5] = [
     [253.0, 231.0, 37.0],
 ];
 
-type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
-
-/// Of the picture's size: each pixel in the colour of the thread that computed it, black if none
-/// did.
-pub(super) fn owners(timeline: &Timeline, mut picture: Image) -> Image {
-    let (width, height) = (picture.width(), picture.height());
+/// Paints each pixel of `image` in the colour of the thread that computed it. Other pixels keep
+/// their colour.
+pub(super) fn owners(timeline: &Timeline, mut image: Image) -> Image {
+    let (width, height) = (image.width(), image.height());
     for (index, lane) in timeline.lanes.iter().enumerate() {
         let RGBColor(red, green, blue) = color(index);
         let rgb = [red, green, blue].map(|channel| f32::from(channel) / 255.0);
         for Piece { rect, .. } in &lane.pieces {
             let columns = rect.x.min(width) as usize..(rect.x + rect.width).min(width) as usize;
             for y in rect.y.min(height)..(rect.y + rect.height).min(height) {
-                picture.pixels_mut()[y as usize * width as usize..][columns.clone()].fill(rgb);
+                image.pixels_mut()[y as usize * width as usize..][columns.clone()].fill(rgb);
             }
         }
     }
-    picture
+    image
 }
 
-/// Part of the picture, and what a pixel of it took in the mean, in nanoseconds.
+/// A part of the image, and the mean time of its pixels in nanoseconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Cell {
     rect: Rect,
     ns: f64,
 }
 
-/// The pieces themselves, or squares of pixels if there are too many of them.
+/// Returns the pieces themselves, or squares of pixels if there are too many pieces.
 fn cells(timeline: &Timeline, (width, height): (u32, u32)) -> Vec<Cell> {
     let pieces = || timeline.lanes.iter().flat_map(|lane| &lane.pieces);
     let pixels = |rect: Rect| f64::from(rect.width) * f64::from(rect.height);
@@ -86,16 +85,14 @@ fn cells(timeline: &Timeline, (width, height): (u32, u32)) -> Vec<Cell> {
     sums.iter().enumerate().map(cell).collect()
 }
 
-/// What each part of the picture cost, with its scale.
-pub(super) fn cost(row: &ExplainedStrategy, size: (u32, u32)) -> Result<String, String> {
-    let mut text = String::new();
-    draw(row, size, &mut text).map_err(|e| format!("the map of cost cannot be drawn: {e}"))?;
-    Ok(text)
-}
-
-fn draw(row: &ExplainedStrategy, (width, height): (u32, u32), text: &mut String) -> Drawn {
+/// Draws the time of each part of the image, and the scale.
+pub(super) fn draw(
+    row: &ExplainedStrategy,
+    (width, height): (u32, u32),
+    text: &mut String,
+) -> Drawn {
     let cells = cells(&row.timeline, (width, height));
-    // Nothing takes no time: a clock may be too coarse to see it.
+    // A coarse clock may measure 0 ns, which has no logarithm.
     let logarithm = |ns: f64| ns.max(1.0).log10();
     let least = cells.iter().map(|cell| logarithm(cell.ns)).fold(f64::INFINITY, f64::min).min(9.0);
     let most = cells.iter().map(|cell| logarithm(cell.ns)).fold(least, f64::max).max(least + 0.01);
@@ -106,9 +103,9 @@ fn draw(row: &ExplainedStrategy, (width, height): (u32, u32), text: &mut String)
     let root = SVGBackend::with_string(text, (side(width) + FRAME.0, side(height) + FRAME.1));
     let root = root.into_drawing_area();
     root.fill(&WHITE)?;
-    let root = root.titled(&format!("{}: what a pixel took", row.strategy), ("sans-serif", 20))?;
+    let root = root.titled(&format!("{}: time of each pixel", row.strategy), ("sans-serif", 20))?;
     let (left, right) = root.split_horizontally(side(width) + FRAME.0 - 110);
-    // Rows count from the top.
+    // The image's rows count from the top, the chart's axis from the bottom.
     let mut chart = ChartBuilder::on(&left)
         .margin(10)
         .x_label_area_size(30)
@@ -136,7 +133,7 @@ fn draw(row: &ExplainedStrategy, (width, height): (u32, u32), text: &mut String)
         .x_labels(0)
         .y_desc("us a pixel")
         .axis_desc_style(("sans-serif", 12))
-        // Otherwise it would be as small as this panel is narrow.
+        // The default size follows the width of this narrow panel.
         .label_style(("sans-serif", 12))
         .y_label_formatter(&|value| microseconds(*value))
         .draw()?;
@@ -149,15 +146,15 @@ fn draw(row: &ExplainedStrategy, (width, height): (u32, u32), text: &mut String)
     Ok(())
 }
 
-/// Three digits of a power of ten of nanoseconds, as microseconds.
+/// Returns microseconds with three digits, from the logarithm to base 10 of nanoseconds.
 fn microseconds(logarithm: f64) -> String {
-    // That many digits stand before the point; in nanoseconds they would be three more.
+    // The number of digits before the point.
     let before = (logarithm - 3.0).floor().max(-1.0) as i32 + 1;
     let after = usize::try_from(3 - before).unwrap_or(0);
     format!("{:.after$}", 10f64.powf(logarithm - 3.0))
 }
 
-/// The colour of a share from 0 to 1, straight between those that are given.
+/// Returns the colour of a share from 0 to 1, interpolated linearly.
 fn viridis(share: f64) -> RGBColor {
     let place = share.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f64;
     let below = (place as usize).min(VIRIDIS.len() - 2);
@@ -183,15 +180,15 @@ mod tests {
         }
     }
 
-    /// Catches rows for columns, a neighbour's colour, and what reaches beyond the picture.
+    /// Catches swapped rows and columns, a neighbour's colour, and a piece beyond the image.
     #[test]
     fn each_pixel_shows_its_thread() {
         let timeline = timeline([vec![piece((0, 0, 2, 1), 1)], vec![piece((2, 1, 5, 5), 1)]]);
-        let picture = owners(&timeline, Image::new(3, 2).expect("a picture"));
+        let image = owners(&timeline, Image::new(3, 2).expect("an image"));
         let [first, second] =
             [0, 1].map(|thread| [color(thread).0, color(thread).1, color(thread).2]);
         let expected = [first, first, [0; 3], [0; 3], [0; 3], second];
-        assert_eq!(picture.to_rgb8(), expected.concat());
+        assert_eq!(image.to_rgb8(), expected.concat());
     }
 
     #[test]
@@ -200,7 +197,8 @@ mod tests {
         let cell = |x, y, width, height, ns| Cell { rect: Rect { x, y, width, height }, ns };
         assert_eq!(cells(&few, (3, 3)), [cell(0, 0, 2, 3, 2.0), cell(2, 0, 1, 1, 5.0)]);
 
-        // 201 x 101 pixels: squares of two, the last column and row cut off. A pixel takes its x.
+        // 201 x 101 pixels make squares of two, the last column and row cut off. A pixel's time
+        // is its x.
         let pixels: Vec<Piece> = (0..101)
             .flat_map(|y| (0..201).map(move |x| piece((x, y, 1, 1), u64::from(x))))
             .collect();

@@ -1,20 +1,20 @@
-//! A time line short enough to look at: single pixels, one after the other, become runs.
+//! Runs of pixels: a shorter form of a time line for drawings and traces.
 
 use rayweave_contract::Rect;
 use rayweave_measure::timeline::{Piece, TimelineLane};
 
-/// A piece, or pixels that a thread computed from left to right without a long gap.
+/// A piece, or pixels that a thread computed from left to right without a long gap between them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Run {
     pub(super) rect: Rect,
     pub(super) begin_ns: u64,
     pub(super) end_ns: u64,
-    /// Of this the time on pieces.
+    /// The part of this time that was spent on pieces.
     pub(super) busy_ns: u64,
     pub(super) pieces: u64,
 }
 
-/// The runs of a thread. Pieces of more than a pixel are runs of one.
+/// Returns the runs of a thread. A piece of several pixels is a run of its own.
 pub(super) fn of(lane: &TimelineLane, long_gap_ns: f64) -> Vec<Run> {
     let mut runs: Vec<Run> = Vec::new();
     for piece in &lane.pieces {
@@ -58,15 +58,14 @@ mod tests {
         Piece { rect: Rect { x, y, width, height }, begin_ns, end_ns }
     }
 
-    /// Catches runs over a row's end, over a long gap, backwards, and of pieces that are not
-    /// pixels.
+    /// Catches runs beyond the end of a row, over a long gap, backwards, and of larger pieces.
     #[test]
     fn pixels_that_follow_each_other_are_one_run() {
         let pieces = vec![
             piece((3, 0, 1, 1), 0, 10),
             piece((4, 0, 1, 1), 15, 20),
             piece((5, 0, 1, 1), 20, 29),
-            // After a gap of 6, in another row, to the left.
+            // After a gap of 6, in another row, to the left, and larger.
             piece((6, 0, 1, 1), 35, 40),
             piece((7, 1, 1, 1), 40, 41),
             piece((6, 1, 1, 1), 41, 42),

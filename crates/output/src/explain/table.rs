@@ -1,11 +1,11 @@
-//! The explanation for people.
+//! The time breakdown as tables, with advice.
 
 use super::{ExplanationView, Thread, imbalance, label, name};
 use crate::{machine, noise, style};
 use rayweave_measure::efficiency::Cause;
 use rayweave_measure::explanation::{ExplainedStrategy, Explanation};
 
-/// A share of the thread-time below which nothing is worth a word.
+/// The smallest share of the thread-time that is worth mentioning.
 const NOTABLE: f64 = 0.01;
 
 pub(super) fn text(view: &ExplanationView<'_>) -> String {
@@ -29,8 +29,8 @@ fn heading(explanation: &Explanation, row: &ExplainedStrategy, unit: Unit) -> St
     let ExplainedStrategy { strategy, threads, wall_ns, .. } = row;
     let (speedup, name) = (reference_ns / wall_ns, unit.name);
     format!(
-        "{strategy} on {threads} thread{}: {} {name}, {reference} {} {name}: speed-up {speedup:.2}, efficiency {:.0} %; \
-         the quickest of {rounds} rounds",
+        "{strategy} on {threads} thread{}: {} {name}, {reference} {} {name}: \
+         speed-up {speedup:.2}, efficiency {:.0} %; the quickest of {rounds} rounds",
         plural(*threads),
         unit.text(*wall_ns),
         unit.text(*reference_ns),
@@ -38,7 +38,7 @@ fn heading(explanation: &Explanation, row: &ExplainedStrategy, unit: Unit) -> St
     )
 }
 
-/// Where the thread-time goes.
+/// Returns the table of causes.
 fn causes(explanation: &Explanation, row: &ExplainedStrategy, unit: Unit) -> String {
     let all = row.thread_time_ns();
     let cells = |label: &str, ns: f64, sign: f64| {
@@ -60,14 +60,14 @@ fn causes(explanation: &Explanation, row: &ExplainedStrategy, unit: Unit) -> Str
 
 fn sum(row: &ExplainedStrategy, unit: Unit) -> String {
     let (explained, lost) = (row.lost_time.total_ns(), row.lost_ns);
-    // Of next to nothing there is no percentage.
+    // A percentage of almost nothing means nothing.
     let share = if lost.abs() < NOTABLE * row.thread_time_ns() {
         "less than 1 % of the thread-time".to_owned()
     } else {
         format!("{:.0} %", 100.0 * explained / lost)
     };
     format!(
-        "adds up to {} of {} {} lost ({share})",
+        "explained: {} of {} {} lost ({share})",
         unit.text(explained),
         unit.text(lost),
         unit.name
@@ -81,7 +81,7 @@ fn recording(row: &ExplainedStrategy) -> String {
     )
 }
 
-/// What each thread does.
+/// Returns the table of threads.
 fn threads(view: &ExplanationView<'_>, row: &ExplainedStrategy, unit: Unit) -> String {
     let timed = |what| format!("{what}\n{}", unit.name);
     let header = [
@@ -124,14 +124,14 @@ fn threads(view: &ExplanationView<'_>, row: &ExplainedStrategy, unit: Unit) -> S
 
 fn gaps(row: &ExplainedStrategy) -> String {
     format!(
-        "imbalance: the busiest thread computes {:.2} times the mean. Long gaps: over {:.1} us between two pieces, \
-         which one thread alone has once in 1000.",
+        "imbalance: the busiest thread computes {:.2} times the mean.\n\
+         long gaps: over {:.1} us between two pieces, as 1 gap in 1000 is on one thread alone.",
         imbalance(row),
         row.long_gap_ns / 1e3,
     )
 }
 
-/// The largest cause, and what helps; unless chance is larger.
+/// Returns the largest cause and what helps, unless chance is larger.
 fn advice(row: &ExplainedStrategy) -> String {
     let cause = row.lost_time.largest();
     let share = row.lost_time.to(cause) / row.thread_time_ns();
@@ -139,47 +139,54 @@ fn advice(row: &ExplainedStrategy) -> String {
         return "No cause takes 1 % of the thread-time.".to_owned();
     }
     if row.unexplained_ns().abs() > row.lost_time.to(cause) {
-        return "No verdict: recorded and plain renderings differ by more than any cause takes. Measure longer \
-                (--time-limit), or on a quieter machine."
+        return "No verdict: recorded and plain renderings differ by more than the largest cause \
+                takes.\nMeasure longer (--time-limit) or on a quieter machine."
             .to_owned();
     }
     let help = match cause {
         Cause::Redundant => {
-            "its pieces compute again what the pixels of a tile share; a strategy of larger pieces helps, or a larger \
-             --tile"
+            "Its pieces compute again what the pixels of a tile share.\n\
+             A strategy with larger pieces helps, or a larger --tile."
         }
         Cause::Slowdown => {
-            "the same pieces take longer when all threads compute: cores that share memory, clock or units, or other \
-             programs; no strategy helps, fewer threads or a quiet machine may"
+            "The same pieces take longer when all threads compute: cores share memory, clock or\n\
+             execution units, or other programs run. No strategy helps; fewer threads or a quieter \
+             machine may."
         }
-        Cause::Dispatch => "there are many pieces for the work in each; larger ones help",
+        Cause::Dispatch => "There are many pieces with little work in each. Larger pieces help.",
         Cause::Contention => {
-            "threads hinder each other between pieces; writing without a lock helps, or taking it for larger pieces"
+            "Threads delay each other between pieces.\n\
+             Writing without a lock helps, or taking the lock for larger pieces."
         }
         Cause::Imbalance => {
-            "threads wait for the last; pieces that whoever is free takes help, and smaller ones at the end"
+            "Threads wait for the last one.\n\
+             Scheduling at run time helps, and smaller pieces at the end."
         }
         Cause::Serial => {
-            "little is to be computed for what starting and ending takes; a larger picture helps, or threads that \
-             stay"
+            "Starting and ending take long compared with the work.\n\
+             A larger image helps, or threads that stay alive between renderings."
         }
     };
-    format!("Most is lost to {} ({:.0} %): {help}.", name(cause), 100.0 * share)
+    format!("Most is lost to {} ({:.0} %). {help}", name(cause), 100.0 * share)
 }
 
-/// How the rows are meant.
+/// Returns the meaning of the rows.
 fn legend(explanation: &Explanation) -> Vec<String> {
     let Explanation { reference, cost, .. } = explanation;
     vec![
-        format!("useful work: {reference}'s time. redundant work: pieces of one thread alone, beyond {reference}'s."),
-        "slowdown: pieces of all threads, beyond one thread's. dispatch: between pieces, of one thread alone."
-            .to_owned(),
-        "contention: between pieces, beyond that. imbalance: waiting for the last piece of all.".to_owned(),
-        "serial part: before a thread's first piece and after the last of all. speed-up: what it takes of it."
-            .to_owned(),
         format!(
-            "recording took {:.0} ns a piece in it and {:.0} ns between two, which the causes are without; the threads \
-             are those of the quickest recorded rendering, with it.",
+            "useful work: time of {reference}. redundant work: more time in pieces on one thread."
+        ),
+        "slowdown: more time in pieces on all threads. dispatch: time between pieces on one thread."
+            .to_owned(),
+        "contention: more time between pieces on all threads. imbalance: waiting for the last \
+         piece."
+            .to_owned(),
+        "serial part: before a thread's first piece and after the last piece of all.".to_owned(),
+        "speed-up (last column): how much each part adds to or takes from the speed-up.".to_owned(),
+        format!(
+            "Recording takes {:.0} ns in each piece and {:.0} ns between pieces. The causes \
+             exclude it;\nthe table of threads, from the quickest recorded rendering, includes it.",
             cost.inside_ns, cost.outside_ns
         ),
     ]
@@ -189,7 +196,7 @@ fn plural(count: usize) -> &'static str {
     if count == 1 { "" } else { "s" }
 }
 
-/// What times are told in, the same in all of a report, so that its strategies can be compared.
+/// The unit of times. It is the same for all strategies, so that they can be compared.
 #[derive(Clone, Copy)]
 struct Unit {
     name: &'static str,
@@ -197,11 +204,11 @@ struct Unit {
     decimals: usize,
 }
 
-/// Renderings that take less are told in microseconds.
+/// If the shortest rendering takes less, times are in microseconds.
 const SHORT_NS: f64 = 10e6;
 
 impl Unit {
-    /// By the shortest rendering.
+    /// Chooses the unit by the shortest rendering.
     fn of(explanation: &Explanation) -> Self {
         let shortest = explanation.rows.iter().map(|row| row.wall_ns).fold(f64::INFINITY, f64::min);
         if shortest < SHORT_NS {

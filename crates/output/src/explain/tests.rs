@@ -1,5 +1,4 @@
-//! Text, JSON, trace and pictures of one made-up explanation: a queue of tiles, and pixels by two
-//! of three threads.
+//! Every form of a made-up time breakdown: a queue of tiles, and pixels by two of three threads.
 
 use super::*;
 use crate::compare::fixtures::noise;
@@ -96,7 +95,8 @@ fn text_puts_a_figure_to_each_cause_and_adds_them_up() {
         assert!(lines.contains(&expected), "{expected:?} in\n{text}");
     };
     assert!(text.starts_with(
-        "queue on 2 threads: 60.00 ms, sequential 100.00 ms: speed-up 1.67, efficiency 83 %; the quickest of 7 rounds\n"
+        "queue on 2 threads: 60.00 ms, sequential 100.00 ms: speed-up 1.67, efficiency 83 %; \
+         the quickest of 7 rounds\n"
     ));
     has("useful work 100.00 83.3 % +1.67");
     has("redundant work 2.00 1.7 % -0.03");
@@ -106,27 +106,23 @@ fn text_puts_a_figure_to_each_cause_and_adds_them_up() {
     has("imbalance 10.00 8.3 % -0.17");
     has("serial part 4.80 4.0 % -0.08");
     has("not explained 1.20 1.0 % -0.02");
-    has("adds up to 18.80 of 20.00 ms lost (94 %)");
+    has("explained: 18.80 of 20.00 ms lost (94 %)");
     has("queue 0 0.00 0.01 0.00 0.00 2 16 18 0 0.00");
     has("queue 1 0.00 0.00 0.00 0.01 2 16 18 1 0.00");
-    assert!(text.contains("computes 1.52 times the mean. Long gaps: over 1.5 us"), "{text}");
-    assert!(text.contains("\nMost is lost to imbalance (8 %): "), "{text}");
+    assert!(text.contains("computes 1.52 times the mean.\nlong gaps: over 1.5 us "), "{text}");
+    assert!(text.contains("\nMost is lost to imbalance (8 %). "), "{text}");
     has("1 more thread got no piece");
     has(&crate::noise::text(&noise()));
-    has(
-        "recording took 30 ns a piece in it and 51 ns between two, which the causes are without; the threads are those \
-         of the quickest recorded rendering, with it.",
-    );
+    has("Recording takes 30 ns in each piece and 51 ns between pieces. The causes exclude it;");
 }
 
-/// Catches a culprit that is named by chance: what is not explained is more than it takes, above or
-/// below.
+/// Catches a cause that is named by chance: the unexplained time, of either sign, exceeds it.
 #[test]
 fn what_chance_outweighs_is_no_verdict() {
     let (machine, noise) = (Machine::here(), noise());
     for (lost_ms, verdict) in [(28.7, true), (28.9, false), (8.9, true), (8.7, false)] {
         let mut explanation = explanation();
-        // Its causes sum up to 18.8 ms, and the largest takes 10.
+        // The causes take 18.8 ms, and the largest of them takes 10.
         explanation.rows[0].lost_ns = lost_ms * MS;
         let (size, tile, machine, noise) = ((8, 4), 4, &machine, &noise);
         let text = ExplanationView {
@@ -139,12 +135,12 @@ fn what_chance_outweighs_is_no_verdict() {
             noise,
         }
         .text();
-        assert_eq!(text.contains("\nMost is lost to imbalance (8 %): "), verdict, "{text}");
+        assert_eq!(text.contains("\nMost is lost to imbalance (8 %). "), verdict, "{text}");
         assert_eq!(text.contains("\nNo verdict: "), !verdict, "{text}");
     }
 }
 
-/// Catches times of which no digit is left, and strategies of one report told in several units.
+/// Catches times that round to zero, and strategies shown in different units.
 #[test]
 fn short_renderings_are_told_in_microseconds() {
     let (machine, noise) = (Machine::here(), noise());
@@ -160,14 +156,14 @@ fn short_renderings_are_told_in_microseconds() {
     explanation.rows[1].wall_ns = 0.0623 * MS;
     let text = told(&explanation);
     assert!(text.contains("by-pixel on 3 threads: 62.3 us, sequential 100000.0 us: "), "{text}");
-    assert!(text.contains("adds up to 18800.0 of 20000.0 us lost (94 %)"), "{text}");
+    assert!(text.contains("explained: 18800.0 of 20000.0 us lost (94 %)"), "{text}");
     let words: Vec<&str> = text.split_whitespace().collect();
     assert!(!words.contains(&"ms"), "{text}");
     let queue: Vec<&str> = "queue 1 1.5 2.5 2.0 5.5 2 16 - 1 2.0".split(' ').collect();
     assert!(words.windows(queue.len()).any(|window| window == queue), "{text}");
 }
 
-/// Catches a percentage of next to nothing, and advice where there is nothing to gain.
+/// Catches a percentage of almost nothing, and advice where there is nothing to gain.
 #[test]
 fn little_lost_is_said_to_be_little() {
     let (machine, noise) = (Machine::here(), noise());
@@ -192,7 +188,7 @@ fn little_lost_is_said_to_be_little() {
     let text = view.text();
     assert!(text.starts_with("queue on 1 thread: "), "{text}");
     assert!(
-        text.contains("adds up to 0.20 of 0.50 ms lost (less than 1 % of the thread-time)\n"),
+        text.contains("explained: 0.20 of 0.50 ms lost (less than 1 % of the thread-time)\n"),
         "{text}"
     );
     assert!(text.contains("\nNo cause takes 1 % of the thread-time.\n"), "{text}");
@@ -260,7 +256,7 @@ fn the_trace_keeps_the_rules_of_its_format() {
     }
     for (thread, slices) in &mut slices {
         slices.sort_by(|a, b| a.0.total_cmp(&b.0));
-        // Microseconds: a billionth of one is rounding.
+        // In microseconds, 1e-9 is rounding.
         assert!(
             slices.windows(2).all(|pair| pair[0].1 <= pair[1].0 + 1e-9),
             "{thread:?}: {slices:?}"
@@ -290,7 +286,7 @@ fn the_time_line_has_a_bar_for_each_thread_and_a_name() {
     {
         assert!(queue.contains(part), "{part}: {queue}");
     }
-    // The ground, two threads' idle bars and four pieces.
+    // The background, the idle bars of two threads and four pieces.
     assert_eq!(queue.matches("<rect").count(), 1 + 2 + 4, "{queue}");
     assert!(pixels.contains("thread 2: no piece"), "{pixels}");
     assert_eq!(pixels.matches("<rect").count(), 1 + 3 + 2, "{pixels}");
@@ -300,5 +296,5 @@ fn the_time_line_has_a_bar_for_each_thread_and_a_name() {
 fn the_map_of_cost_has_each_piece_and_a_scale() {
     let map = with_view(|view| view.cost(&view.explanation.rows[0]).expect("drawn"));
     assert_eq!(map.matches("<rect").count(), 1 + 4 + 64, "{map}");
-    assert!(map.contains("us a pixel") && map.contains("queue: what a pixel took"), "{map}");
+    assert!(map.contains("us a pixel") && map.contains("queue: time of each pixel"), "{map}");
 }

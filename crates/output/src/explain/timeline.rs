@@ -1,31 +1,25 @@
-//! A bar for each thread, from the beginning of the rendering to its end.
+//! The drawing of a time line: a bar for each thread, from start to end of the rendering.
 
 use super::{color, label, runs, shaded};
+use crate::plot::Drawn;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use rayweave_measure::explanation::ExplainedStrategy;
 
-/// Of the whole drawing, in pixels.
+/// Width of the drawing in pixels.
 const WIDTH: u32 = 1200;
 
-/// Of a thread, in pixels.
+/// Height of a thread's lane in pixels.
 const LANE: u32 = 52;
 
-/// Of what surrounds the threads, in pixels.
+/// Height of everything around the lanes in pixels.
 const FRAME: u32 = 110;
 
-/// What nobody computes in.
+/// The colour of a thread without a piece.
 const IDLE: RGBColor = RGBColor(235, 235, 235);
 
-type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
-
-pub(super) fn svg(row: &ExplainedStrategy) -> Result<String, String> {
-    let mut text = String::new();
-    draw(row, &mut text).map_err(|e| format!("the time line cannot be drawn: {e}"))?;
-    Ok(text)
-}
-
-fn draw(row: &ExplainedStrategy, text: &mut String) -> Drawn {
+/// Draws the time line of a strategy.
+pub(super) fn draw(row: &ExplainedStrategy, text: &mut String) -> Drawn {
     let timeline = &row.timeline;
     let lanes = timeline.lanes.len().max(row.threads);
     let height =
@@ -34,7 +28,7 @@ fn draw(row: &ExplainedStrategy, text: &mut String) -> Drawn {
     root.fill(&WHITE)?;
     let wall = milliseconds(timeline.wall_ns);
     let title =
-        format!("{}, {} threads: each thread's pieces; grey: none", row.strategy, row.threads);
+        format!("{}, {} threads: pieces of each thread; grey: none", row.strategy, row.threads);
     let mut chart = ChartBuilder::on(&root)
         .caption(title, ("sans-serif", 20))
         .margin(12)
@@ -47,7 +41,7 @@ fn draw(row: &ExplainedStrategy, text: &mut String) -> Drawn {
         .x_desc("ms since the rendering began")
         .draw()?;
     for index in 0..lanes {
-        // The first thread is on top; below its name is its bar.
+        // The first thread is on top. Its bar is below its name.
         let bottom = (lanes - 1 - index) as f64;
         let bar = |begin: f64, end: f64| [(begin, bottom + 0.05), (end, bottom + 0.6)];
         chart.draw_series([Rectangle::new(bar(0.0, wall), IDLE.filled())])?;
@@ -56,7 +50,7 @@ fn draw(row: &ExplainedStrategy, text: &mut String) -> Drawn {
             continue;
         };
         let bars = runs::of(lane, row.long_gap_ns).into_iter().enumerate().map(|(place, run)| {
-            // Neighbours differ, so that pieces can be told apart.
+            // Neighbouring pieces differ in colour.
             let color = if place % 2 == 0 { color(index) } else { shaded(color(index)) };
             Rectangle::new(
                 bar(milliseconds(run.begin_ns), milliseconds(run.end_ns)),
@@ -72,7 +66,7 @@ fn draw(row: &ExplainedStrategy, text: &mut String) -> Drawn {
     Ok(())
 }
 
-/// Above a thread's bar.
+/// Returns a text above a thread's bar.
 fn above(text: String, bottom: f64) -> Text<'static, (f64, f64), String> {
     let style = TextStyle::from(("sans-serif", 13)).pos(Pos::new(HPos::Left, VPos::Bottom));
     Text::new(text, (0.0, bottom + 0.63), style)

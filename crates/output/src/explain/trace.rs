@@ -1,7 +1,7 @@
 //! The time lines in the trace event format, which Perfetto and Chrome's tracing page show.
 //!
-//! A strategy is a process and a thread is a thread; what the rendering takes as a whole is thread
-//! 0. Times are microseconds since the rendering began. Source: Google, "Trace Event Format".
+//! A strategy is a process, and each of its threads is a thread. Thread 0 is the whole rendering.
+//! Times are in microseconds since the rendering began. Source: Google, "Trace Event Format".
 
 use super::{ExplanationView, label, runs};
 use rayweave_measure::explanation::ExplainedStrategy;
@@ -28,10 +28,10 @@ struct Event<'a> {
 
 #[derive(Serialize)]
 enum Phase {
-    /// With a duration.
+    /// A slice with a duration.
     #[serde(rename = "X")]
     Complete,
-    /// A name of a process or thread.
+    /// The name of a process or thread.
     #[serde(rename = "M")]
     Metadata,
 }
@@ -48,7 +48,7 @@ pub(super) fn text(view: &ExplanationView<'_>) -> String {
     let rows = view.explanation.rows.iter().enumerate();
     let trace_events = rows.flat_map(|(index, row)| events(index + 1, row)).collect();
     let trace = Trace { display_time_unit: "ms", trace_events };
-    // In one line: indented it would be thrice as long.
+    // On one line: indented JSON would be three times as long.
     serde_json::to_string(&trace).expect("plain structures are JSON")
 }
 

@@ -1,10 +1,11 @@
-//! Speed-up over threads on logarithmic axes.
+//! The plot of speed-up over threads on logarithmic axes.
 
 use super::ForecastView;
+use crate::plot::Drawn;
 use plotters::prelude::*;
 use rayweave_measure::forecast::ForecastCurve;
 
-/// Of the whole plot, in pixels.
+/// Width and height of the plot in pixels.
 const SIZE: (u32, u32) = (1100, 800);
 
 const GREY: RGBColor = RGBColor(170, 170, 170);
@@ -12,15 +13,8 @@ const GREY: RGBColor = RGBColor(170, 170, 170);
 /// The radius of a marker, in pixels.
 const MARKER: i32 = 4;
 
-type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
-
-pub(super) fn svg(view: &ForecastView<'_>) -> Result<String, String> {
-    let mut text = String::new();
-    draw(view, &mut text).map_err(|e| format!("the plot cannot be drawn: {e}"))?;
-    Ok(text)
-}
-
-fn draw(view: &ForecastView<'_>, text: &mut String) -> Drawn {
+/// Draws a line and circles for each strategy.
+pub(super) fn draw(view: &ForecastView<'_>, text: &mut String) -> Drawn {
     let curves = &view.forecast.curves;
     let root = SVGBackend::with_string(text, SIZE).into_drawing_area();
     root.fill(&WHITE)?;
@@ -48,10 +42,10 @@ fn draw(view: &ForecastView<'_>, text: &mut String) -> Drawn {
         })
         .light_line_style(RGBColor(240, 240, 240))
         .draw()?;
-    let perfect = [threads.start.max(1.0), threads.end].map(|threads| (threads, threads));
+    let ideal = [threads.start.max(1.0), threads.end].map(|threads| (threads, threads));
     chart
-        .draw_series(LineSeries::new(perfect, GREY))?
-        .label("a thread, a core")
+        .draw_series(LineSeries::new(ideal, GREY))?
+        .label("ideal speed-up")
         .legend(|(x, y)| PathElement::new([(x, y), (x + 16, y)], GREY));
     for (index, curve) in curves.iter().enumerate() {
         let color = Palette99::pick(index).to_rgba();
@@ -76,7 +70,7 @@ fn draw(view: &ForecastView<'_>, text: &mut String) -> Drawn {
     Ok(())
 }
 
-/// The ranges that hold every point, with some room.
+/// Returns the ranges of threads and speed-ups that contain every point, with a margin.
 fn axes(curves: &[ForecastCurve]) -> (std::ops::Range<f64>, std::ops::Range<f64>) {
     let points = || curves.iter().flat_map(|curve| &curve.points);
     let range = |values: &dyn Fn() -> Vec<f64>| {

@@ -1,4 +1,4 @@
-//! The forecast for people.
+//! The predictions, and the measurements that check them, as tables.
 
 use super::{ASSUMPTIONS, ForecastView};
 use crate::compare::complaint;
@@ -23,7 +23,8 @@ pub(super) fn text(view: &ForecastView<'_>) -> String {
 fn heading(view: &ForecastView<'_>) -> String {
     let ForecastView { scene, width, height, tile, .. } = view;
     format!(
-        "{scene}, {width} x {height} pixels, tiles of {tile}: predicted speed-up by number of threads"
+        "{scene}, {width} x {height} pixels, tiles of {tile}: predicted speed-up by number of \
+         threads"
     )
 }
 
@@ -64,13 +65,16 @@ fn crosstalk(share: f64) -> String {
 }
 
 fn laws_legend() -> &'static str {
-    "speed-up: over sequential rendering on one thread of this machine.\n\
-     Amdahl (1967) and USL (Gunther, 1993), fitted by least squares to what the strategy makes of its own single thread:\n\
-     the serial share; sigma, waiting for turns; kappa, each thread's cost to each other; peak, threads beyond which more\n\
-     are slower. ±: by how much the law misses the points, root mean square. A law that misses them explains nothing."
+    "speed-up: relative to sequential rendering on one thread of this machine.\n\
+     Amdahl (1967) and USL (Gunther, 1993) are fitted by least squares to the speed-ups of each \
+     strategy\nover its own single thread. serial: share that does not run in parallel. sigma: \
+     share that waits for\na turn. kappa: cost of each pair of threads. peak: more threads than \
+     this are slower. ±: root mean\nsquare error of the fit; a law with a large error explains \
+     nothing."
 }
 
-/// Predictions beside what was measured; none where no number of threads asked for is here.
+/// Returns the predictions beside the measurements, if this machine has any of the numbers of
+/// threads.
 fn checks(curves: &[ForecastCurve]) -> Option<String> {
     let rows: Vec<[String; 5]> = curves
         .iter()
@@ -87,7 +91,7 @@ fn checks(curves: &[ForecastCurve]) -> Option<String> {
     let within = differences.iter().filter(|difference| difference.abs() <= 0.05).count();
     let header = ["strategy", "threads", "predicted", "measured\n[95 % interval]", "difference"];
     Some(format!(
-        "{}\n{within} of {} within 5 %",
+        "{}\n{within} of {} predictions within 5 %",
         style::table(header, rows.into_iter(), 1..=4),
         differences.len()
     ))
@@ -103,21 +107,25 @@ fn check(curve: &ForecastCurve, point: &ForecastPoint) -> Option<[String; 5]> {
     ])
 }
 
-/// What the predictions were made from.
+/// Returns the measurements that the predictions start from.
 fn basis(view: &ForecastView<'_>) -> String {
     let forecast = view.forecast;
     let slowdowns = forecast.slowdowns.iter().map(|&Slowdown { threads, factor: slowdown }| {
-        let used = if slowdown.median < 1.0 { "by chance, 1 is used" } else { "used" };
-        let slowdown = style::precise_interval(slowdown);
-        format!("{threads} threads that share nothing take {slowdown} times as long as one, each: {used}.")
+        let by_chance =
+            if slowdown.median < 1.0 { " Less than 1 is chance: 1 is used." } else { "" };
+        format!(
+            "Each of {threads} threads that share nothing takes {} times as long as one thread \
+             alone.{by_chance}",
+            style::precise_interval(slowdown)
+        )
     });
     let reference = forecast
         .comparison
         .reference_ns()
-        .map(|ns| format!("the reference takes {:.2} ms.", ns / 1e6));
+        .map(|ns| format!("The reference takes {:.2} ms.", ns / 1e6));
     let rounds = format!(
-        "measured: {} interleaved rounds, every picture verified; predicted from pieces timed one by one on one thread, in \
-         the same rounds, and from the overheads of threads.",
+        "Measured in {} interleaved rounds, every image verified. Predicted from the time of each \
+         piece on\none thread, in the same rounds, and from the overheads of threads.",
         forecast.comparison.rounds
     );
     slowdowns.chain(reference).chain([rounds]).collect::<Vec<_>>().join("\n")

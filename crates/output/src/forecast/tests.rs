@@ -38,7 +38,7 @@ fn forecast() -> Forecast {
                 row("alone", 1, "none", 50_000_000),
                 Measurement { identical: false, ..row("lock", 1, "per-render", 1) },
             ],
-            digest: Image::new(1, 1).expect("a picture").digest(),
+            digest: Image::new(1, 1).expect("an image").digest(),
             rounds: 6,
             interrupted: false,
         },
@@ -67,11 +67,11 @@ fn the_table_predicts_checks_and_says_what_is_assumed() {
     has("queue 0.990 1.80 123 0.0200 ±1 % 0.0100 1.0e-4 ±0 % 99");
     has("lock 0.500 0.900 0.250 - - - -");
     has("queue 2 1.80 2.00 [1.90, 2.10] -10.0 %");
-    has("1 of 2 within 5 %");
+    has("1 of 2 predictions within 5 %");
     has("omp: unavailable here: no compiler");
-    assert!(table.contains("lock, 1 thread: a wrong image"), "{table}");
+    assert!(table.contains("lock, 1 thread: wrong image (digest "), "{table}");
     assert!(table.contains("1.050 [1.000, 1.100] times as long"), "{table}");
-    assert!(table.contains("the reference takes 50.00 ms."), "{table}");
+    assert!(table.contains("The reference takes 50.00 ms."), "{table}");
     has(&crate::noise::text(&noise()));
     assert!(ASSUMPTIONS.iter().all(|assumption| table.contains(assumption)), "{table}");
 }
@@ -99,7 +99,7 @@ fn json_has_every_point_and_law() {
 #[test]
 fn the_plot_names_every_strategy() {
     let svg = with_view(|view| view.svg()).expect("a plot");
-    for word in ["<svg", "queue", "lock", "room, 5 x 4 pixels", "threads"] {
+    for word in ["<svg", "queue", "lock", "room, 5 x 4 pixels", "threads", "ideal speed-up"] {
         assert!(svg.contains(word), "{word}");
     }
     // Two measurements.

@@ -1,19 +1,20 @@
-//! Time against error on logarithmic axes.
+//! The plot of time against error on logarithmic axes.
 
 use super::TradeoffView;
+use crate::plot::Drawn;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use rayweave_accuracy::metrics::psnr;
 use rayweave_accuracy::tradeoff::{ARITHMETICS, Setting, TradeoffRow};
 use rayweave_core::{Arithmetic, Sampling};
 
-/// Of the whole plot, in pixels.
+/// Width and height of the plot in pixels.
 const SIZE: (u32, u32) = (1400, 1100);
 
-/// No error is drawn below this one; 120 dB.
+/// Smaller errors are drawn here: 120 dB.
 const LEAST_ERROR: f64 = 1e-6;
 
-/// A colour a depth: all bounces, one, none.
+/// The colours of the depths: all bounces, one, none.
 const COLORS: [RGBColor; 3] =
     [RGBColor(0, 90, 181), RGBColor(220, 110, 0), RGBColor(120, 120, 120)];
 
@@ -22,17 +23,10 @@ const MARKER: i32 = 3;
 
 const FRONT: RGBColor = RGBColor(200, 30, 60);
 
-type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
-
 type Axes = (std::ops::Range<f64>, std::ops::Range<f64>);
 
-pub(super) fn svg(view: &TradeoffView<'_>) -> Result<String, String> {
-    let mut text = String::new();
-    draw(view, &mut text).map_err(|e| format!("the plot cannot be drawn: {e}"))?;
-    Ok(text)
-}
-
-fn draw(view: &TradeoffView<'_>, text: &mut String) -> Drawn {
+/// Draws a panel for each arithmetic.
+pub(super) fn draw(view: &TradeoffView<'_>, text: &mut String) -> Drawn {
     let root = SVGBackend::with_string(text, SIZE).into_drawing_area();
     root.fill(&WHITE)?;
     let title =
@@ -60,7 +54,7 @@ fn draw_panel(
         .build_cartesian_2d(times.clone().log_scale(), errors.clone().log_scale())?;
     chart
         .configure_mesh()
-        .x_desc("time of a picture, ms")
+        .x_desc("time of an image, ms")
         .y_desc("RMSE from the filter's limit (PSNR)")
         .x_label_formatter(&|ms| if *ms < 1.0 { format!("{ms}") } else { format!("{ms:.0}") })
         .y_label_formatter(&|rmse| format!("{rmse:.0e} ({:.0})", psnr(*rmse)))
@@ -100,7 +94,7 @@ fn draw_panel(
             )?
             .label(format!("importance, bounces: {depth}"))
             .legend(move |(x, y)| TriangleMarker::new((x + 8, y), MARKER + 2, color.filled()));
-        // There with all bounces only: no legend for nothing.
+        // Only settings with all bounces are adaptive: the other depths get no legend.
         let mut adaptive = series(Sampling::Lattice, true).peekable();
         if adaptive.peek().is_some() {
             chart
@@ -122,7 +116,7 @@ fn draw_panel(
     Ok(())
 }
 
-/// Above a point of the lattice, below one of the other sampling: the rays a pixel.
+/// Returns the number of rays a pixel, above a point of the lattice and below any other point.
 fn label<'a>(row: &TradeoffRow, color: &'a RGBColor) -> Text<'a, Point, String> {
     let above = row.setting.sampling == Sampling::Lattice && !row.setting.adaptive;
     let place_of_text = if above { VPos::Bottom } else { VPos::Top };
@@ -139,7 +133,7 @@ fn place(row: &TradeoffRow) -> Point {
     (row.median_ns / 1e6, row.error.rmse.max(LEAST_ERROR))
 }
 
-/// The ranges that hold every point, with some room.
+/// Returns the ranges of times and errors that contain every point, with a margin.
 fn axes(rows: &[TradeoffRow]) -> Axes {
     let range = |of: fn(Point) -> f64| {
         let values = || rows.iter().map(place).map(of);

@@ -1,4 +1,4 @@
-//! The study for people.
+//! The settings as tables, and the recommendation.
 
 use super::{TradeoffView, sampling_name};
 use crate::machine;
@@ -14,7 +14,7 @@ const HEADER: [&str; 14] = [
     "rays a\npixel",
     "bounces",
     "ms",
-    "times as fast\nas the report",
+    "speed-up over\nthe lab report",
     "PSNR\ndB",
     "largest\nerror",
     "off by\n> 1/255",
@@ -38,8 +38,7 @@ pub(super) fn text(view: &TradeoffView<'_>) -> String {
         heading(view),
         style::table(HEADER, rows.into_iter().map(cells), NUMBERS),
         notes(view),
-        "The Pareto front: the most exact setting for its time. All others are dominated."
-            .to_owned(),
+        "Pareto front: the settings that no other setting beats in both time and error.".to_owned(),
         style::table(HEADER, front.into_iter().map(cells), NUMBERS),
         choice(view),
         style::table(COST_HEADER, study.costs.iter().map(cost_cells), 1..=3),
@@ -88,62 +87,66 @@ fn cost_cells(cost: &ArithmeticCost) -> [String; COST_HEADER.len()] {
 
 fn notes(view: &TradeoffView<'_>) -> String {
     let study = view.study;
-    let truth = decibels(psnr(study.reference.uncertainty));
-    let best = study.rows.iter().map(|row| row.error.rmse).fold(1.0, f64::min);
-    let share = study.reference.uncertainty / best;
-    let verdict = if study.reference.uncertainty == 0.0 {
-        "whose halves are the same".to_owned()
+    let own_error = study.reference.uncertainty;
+    let smallest = study.rows.iter().map(|row| row.error.rmse).fold(1.0, f64::min);
+    let (decibels, share) = (decibels(psnr(own_error)), own_error / smallest);
+    let verdict = if own_error == 0.0 {
+        "The two halves of the reference are equal.".to_owned()
     } else if share <= 0.1 {
         format!(
-            "whose own error is about {truth} dB, {share:.2} of the smallest one here: enough for all of them"
+            "Its own error is about {decibels} dB, {share:.2} of the smallest error here: exact \
+             enough for every setting."
         )
     } else {
-        format!("whose own error is about {truth} dB: too much to tell the very best apart")
+        format!("Its own error is about {decibels} dB: too large to rank the most exact settings.")
     };
     let repeatable = if study.repeatable {
-        "Every timed picture was verified."
+        "Every timed image was verified."
     } else {
-        "A TIMED PICTURE CHANGED FROM ONE ROUND TO ANOTHER."
+        "A TIMED IMAGE CHANGED FROM ONE ROUND TO ANOTHER."
     };
     format!(
-        "*: on the Pareto front. PSNR and what follows: against robust f64 with {} rays a pixel,\n\
-         {verdict}.\n\
-         arithmetic: against the same rays in robust f64. sampling: what is left in robust f64 with all bounces.\n\
-         Edges make most of the error, and a picture twice as large has half as many of them a pixel: its PSNR\n\
-         is some 3 dB higher. Settings whose intervals overlap may change places in another run. {repeatable}",
+        "*: on the Pareto front. Errors are measured against robust f64 with {} rays a pixel.\n\
+         {verdict}\n\
+         arithmetic: error against the same rays in robust f64. sampling: error that remains in \
+         robust f64\nwith all bounces. Most of the error is at edges: an image of twice the side \
+         has half the share of\nedge pixels, and its PSNR is about 3 dB higher. Settings whose \
+         intervals overlap may change places\nin another run. {repeatable}",
         reference_rays_per_pixel()
     )
 }
 
+/// Returns the recommended setting for the target, beside the lab report's and a robust one.
 fn choice(view: &TradeoffView<'_>) -> String {
     let (study, target) = (view.study, view.target_psnr);
     let own = study.report_row();
     let own_psnr = decibels(own.error.psnr());
     let Some(row) = study.fastest_with(target) else {
-        return format!("No setting reaches {target} dB here; the report's own has {own_psnr} dB.");
+        return format!(
+            "No setting reaches {target} dB here; the lab report's own setting has {own_psnr} dB."
+        );
     };
     let like = study.fastest_report_like(target).map_or_else(
-        || "With its formulas, lattice and all bounces nothing here reaches it.".to_owned(),
+        || "With its formulas, lattice and bounces no number of rays here reaches it.".to_owned(),
         |like| {
             format!(
-                "With its formulas, lattice and all bounces it takes {} rays a pixel: {:.2} times as long.",
+                "With its formulas, lattice and bounces it takes {} rays a pixel and {:.2} times \
+                 as long.",
                 like.setting.rays_per_pixel(),
                 row.speedup.median / like.speedup.median
             )
         },
     );
-    // What is fast here may be wrong elsewhere: the formulas that hold are named in any case.
+    // The fastest formulas here may be wrong on another scene, so name a robust setting too.
     let robust = study.fastest_robust(target).filter(|robust| robust.setting != row.setting);
     let robust = robust.map_or_else(String::new, |robust| {
-        format!(
-            "\nOf robust formulas: {}, {} times as fast.",
-            robust.setting,
-            interval(robust.speedup)
-        )
+        let speedup = interval(robust.speedup);
+        format!("\nWith robust formulas choose {}: {speedup} times as fast.", robust.setting)
     });
     format!(
-        "For {target} dB choose {}: {} dB in {} ms, {} times as fast as the report's own setting,\n\
-         which has {own_psnr} dB. {like}{robust}",
+        "For {target} dB choose {}: {} dB in {} ms.\n\
+         It is {} times as fast as the lab report's own setting, which has {own_psnr} dB.\n\
+         {like}{robust}",
         row.setting,
         decibels(row.error.psnr()),
         milliseconds(row.median_ns),
