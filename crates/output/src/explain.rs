@@ -9,7 +9,6 @@ mod tests;
 mod timeline;
 mod trace;
 
-use ExplanationView as Report;
 use plotters::style::RGBColor;
 use rayweave_contract::{Image, ImageError};
 use rayweave_measure::efficiency::Cause;

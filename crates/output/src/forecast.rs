@@ -6,7 +6,6 @@ mod table;
 #[cfg(test)]
 mod tests;
 
-use ForecastView as Report;
 use rayweave_measure::{Forecast, Machine, Noise};
 
 /// Predicted and measured speed-ups, with the scene, the machine and its noise.

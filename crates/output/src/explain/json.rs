@@ -1,16 +1,16 @@
-//! The explanation for other programs.
+//! The time breakdown as JSON.
 
-use super::{Report, Thread, imbalance};
+use super::{ExplanationView, Thread, imbalance};
 use crate::json;
 use rayweave_measure::explanation::ExplainedStrategy;
 use rayweave_measure::{Machine, Noise};
 use serde::Serialize;
 
-/// It changes when a key changes its meaning or goes.
+/// The schema number of the JSON. It changes when a key is removed or changes its meaning.
 const SCHEMA: u32 = 1;
 
 #[derive(Serialize)]
-struct Object<'a> {
+struct ExplanationDocument<'a> {
     schema: u32,
     scene: &'a str,
     width: u32,
@@ -24,11 +24,11 @@ struct Object<'a> {
     recording_between_ns: f64,
     machine: &'a Machine,
     noise: &'a Noise,
-    results: Vec<Entry<'a>>,
+    results: Vec<ExplanationEntry<'a>>,
 }
 
 #[derive(Serialize)]
-struct Entry<'a> {
+struct ExplanationEntry<'a> {
     #[serde(flatten)]
     row: &'a ExplainedStrategy,
     speedup: f64,
@@ -37,9 +37,10 @@ struct Entry<'a> {
     threads_recorded: Vec<Thread<'a>>,
 }
 
-pub(super) fn text(report: &Report<'_>) -> String {
-    let Report { scene, size: (width, height), tile, explanation, machine, noise, .. } = *report;
-    json::text(&Object {
+pub(super) fn text(view: &ExplanationView<'_>) -> String {
+    let ExplanationView { scene, size: (width, height), tile, explanation, machine, noise, .. } =
+        *view;
+    json::text(&ExplanationDocument {
         schema: SCHEMA,
         scene,
         width,
@@ -53,16 +54,16 @@ pub(super) fn text(report: &Report<'_>) -> String {
         recording_between_ns: explanation.cost.outside_ns,
         machine,
         noise,
-        results: explanation.rows.iter().map(|row| entry(report, row)).collect(),
+        results: explanation.rows.iter().map(|row| entry(view, row)).collect(),
     })
 }
 
-fn entry<'a>(report: &Report<'a>, row: &'a ExplainedStrategy) -> Entry<'a> {
-    Entry {
+fn entry<'a>(view: &ExplanationView<'a>, row: &'a ExplainedStrategy) -> ExplanationEntry<'a> {
+    ExplanationEntry {
         row,
-        speedup: report.explanation.reference_ns / row.wall_ns,
+        speedup: view.explanation.reference_ns / row.wall_ns,
         unexplained_ns: row.unexplained_ns(),
         imbalance: imbalance(row),
-        threads_recorded: Thread::all(row, report.rays),
+        threads_recorded: Thread::all(row, view.rays),
     }
 }

@@ -1,17 +1,17 @@
-//! The forecast for other programs.
+//! The predictions as JSON.
 
-use super::{ASSUMPTIONS, Report};
+use super::{ASSUMPTIONS, ForecastView};
 use crate::json;
 use rayweave_measure::forecast::{ForecastCurve, ForecastPoint, Slowdown};
 use rayweave_measure::{Machine, Noise};
 use rayweave_predict::{Law, Overheads};
 use serde::Serialize;
 
-/// It changes when a key changes its meaning or goes.
+/// The schema number of the JSON. It changes when a key is removed or changes its meaning.
 const SCHEMA: u32 = 1;
 
 #[derive(Serialize)]
-struct Object<'a> {
+struct ForecastDocument<'a> {
     schema: u32,
     scene: &'a str,
     width: u32,
@@ -24,13 +24,13 @@ struct Object<'a> {
     assumptions: [&'a str; 5],
     slowdowns: &'a [Slowdown],
     reference_median_ns: Option<f64>,
-    results: Vec<Item<'a>>,
-    laws: Vec<Laws<'a>>,
+    results: Vec<ForecastEntry<'a>>,
+    laws: Vec<LawsEntry<'a>>,
     unavailable: &'a [String],
 }
 
 #[derive(Serialize)]
-struct Item<'a> {
+struct ForecastEntry<'a> {
     strategy: &'a str,
     #[serde(flatten)]
     point: &'a ForecastPoint,
@@ -38,11 +38,11 @@ struct Item<'a> {
 }
 
 #[derive(Serialize)]
-struct Laws<'a> {
+struct LawsEntry<'a> {
     strategy: &'a str,
     amdahl: Option<AmdahlLaw>,
     usl: Option<UslLaw>,
-    overheads: Costs,
+    overheads: OverheadsEntry,
 }
 
 #[derive(Serialize)]
@@ -61,7 +61,7 @@ struct UslLaw {
 }
 
 #[derive(Serialize)]
-struct Costs {
+struct OverheadsEntry {
     start_ns: f64,
     next_start_ns: f64,
     piece_ns: f64,
@@ -72,9 +72,9 @@ struct Costs {
     steal_ns: f64,
 }
 
-pub(super) fn json<'a>(report: &Report<'a>) -> String {
-    let forecast = report.forecast;
-    let item = |strategy, point: &'a ForecastPoint| Item {
+pub(super) fn json<'a>(view: &ForecastView<'a>) -> String {
+    let forecast = view.forecast;
+    let item = |strategy, point: &'a ForecastPoint| ForecastEntry {
         strategy,
         point,
         difference: point.difference(),
@@ -83,16 +83,16 @@ pub(super) fn json<'a>(report: &Report<'a>) -> String {
         .curves
         .iter()
         .flat_map(|curve| curve.points.iter().map(move |point| item(curve.strategy, point)));
-    json::text(&Object {
+    json::text(&ForecastDocument {
         schema: SCHEMA,
-        scene: report.scene,
-        width: report.width,
-        height: report.height,
-        tile: report.tile,
+        scene: view.scene,
+        width: view.width,
+        height: view.height,
+        tile: view.tile,
         rounds: forecast.comparison.rounds,
         digest: forecast.comparison.digest.to_string(),
-        machine: report.machine,
-        noise: report.noise,
+        machine: view.machine,
+        noise: view.noise,
         assumptions: ASSUMPTIONS,
         slowdowns: &forecast.slowdowns,
         reference_median_ns: forecast.comparison.reference_ns(),
@@ -102,9 +102,9 @@ pub(super) fn json<'a>(report: &Report<'a>) -> String {
     })
 }
 
-fn laws(curve: &ForecastCurve) -> Laws<'_> {
+fn laws(curve: &ForecastCurve) -> LawsEntry<'_> {
     let Overheads { start, next_start, piece, take, deliver, steal } = curve.overheads;
-    Laws {
+    LawsEntry {
         strategy: curve.strategy,
         amdahl: curve.amdahl.map(|Law { serial, error, .. }| AmdahlLaw { serial, error }),
         usl: curve.usl.map(|law| UslLaw {
@@ -113,7 +113,7 @@ fn laws(curve: &ForecastCurve) -> Laws<'_> {
             error: law.error,
             peak: law.peak(),
         }),
-        overheads: Costs {
+        overheads: OverheadsEntry {
             start_ns: start,
             next_start_ns: next_start,
             piece_ns: piece,
