@@ -1,4 +1,4 @@
-//! Files that appear whole or not at all.
+//! Result files, which are written as a whole or not at all.
 
 use std::collections::HashSet;
 use std::fs;
@@ -6,36 +6,35 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use tempfile::{Builder, NamedTempFile};
 
-/// A file that will be there once it is whole. Until then an old one of this name stays, and
-/// nothing lies beside it, so that a program that is killed while it computes leaves nothing
-/// behind.
+/// A file that gets its contents later. Until then an old file of this name stays, and there is no
+/// temporary file that a killed program would leave behind.
 pub struct PendingFile {
     path: PathBuf,
 }
 
 impl PendingFile {
-    /// Finds out whether `path` can be written, before hours of computing.
+    /// Checks that `path` can be written, before hours of computing.
     pub fn create(path: &Path) -> Result<Self, String> {
         match fs::metadata(path) {
             Ok(metadata) if metadata.is_dir() => return cannot(path, "it is a folder"),
-            // To replace a device or a pipe by a file is not what anyone means.
+            // A device or a pipe must not be replaced by a file.
             Ok(metadata) if !metadata.is_file() => return cannot(path, "it is not a regular file"),
             _ => {}
         }
-        // A link stays a link: what it points to is replaced.
+        // A link stays a link: its target is replaced.
         let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         let folder = folder_of(&target);
         if !folder.is_dir() {
             return cannot(path, &format!("there is no folder {}", folder.display()));
         }
-        // Removed at once: nobody is left to do it when the program is killed.
+        // Remove the trial file at once, because a killed program could not.
         match new_file(&folder).and_then(NamedTempFile::close) {
             Ok(()) => Ok(Self { path: target }),
             Err(error) => cannot(path, &format!("{} in its folder", error.kind())),
         }
     }
 
-    /// Gives the file its contents and its name.
+    /// Writes the file.
     pub fn finish(self, contents: &[u8]) -> Result<(), String> {
         self.replace(contents).or_else(|error| cannot(&self.path, &error.to_string()))
     }
@@ -49,24 +48,23 @@ impl PendingFile {
     }
 }
 
-/// Whether no two of the files that are named are the same: neither two results, nor a result and
-/// what it is computed from, which would be lost.
+/// Checks that no file is named twice, so that no result overwrites another result or an input.
 pub fn distinct_files(paths: &[&Option<PathBuf>]) -> Result<(), String> {
     named_twice(paths.iter().filter_map(|path| path.as_deref())).map_or(Ok(()), |path| {
         Err(format!(
-            "{}: is named twice: nothing may be written over what is read or written too",
+            "{}: is named twice: use another file, so that no input or result is overwritten",
             path.display()
         ))
     })
 }
 
-/// The first of these files that was named before.
+/// Returns the first path to a file that an earlier path leads to.
 pub fn named_twice<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Option<&'a Path> {
     let mut seen = HashSet::new();
     paths.into_iter().find(|path| !seen.insert(place(path)))
 }
 
-/// The same for every way to name a file, whether it is there or not yet.
+/// Returns the same path for every way to name a file, even if it does not exist yet.
 fn place(path: &Path) -> PathBuf {
     let folder = || Some(fs::canonicalize(folder_of(path)).ok()?.join(path.file_name()?));
     fs::canonicalize(path).ok().or_else(folder).unwrap_or_else(|| path.to_owned())
@@ -79,7 +77,7 @@ fn cannot<T>(path: &Path, reason: &str) -> Result<T, String> {
 fn new_file(folder: &Path) -> io::Result<NamedTempFile> {
     let mut builder = Builder::new();
     builder.prefix(".rayweave-");
-    // A temporary file is private by default; this one becomes an ordinary file.
+    // Temporary files are private by default, but this one becomes an ordinary file.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     builder.tempfile_in(folder)
@@ -96,9 +94,9 @@ fn folder_of(path: &Path) -> PathBuf {
 mod tests {
     use super::*;
 
-    /// Catches a temporary file that an interrupted program would leave there.
+    /// Catches a temporary file that an interrupted program would leave behind.
     #[test]
-    fn nothing_lies_in_the_folder_until_the_file_is_whole() {
+    fn the_folder_is_empty_until_the_file_is_complete() {
         let folder = tempfile::TempDir::new().expect("a temporary folder");
         let path = folder.path().join("a.json");
         let files = || fs::read_dir(folder.path()).expect("the folder").count();
@@ -113,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn a_folder_that_is_gone_in_the_meantime_is_told() {
+    fn a_folder_that_vanishes_is_reported() {
         let folder = tempfile::TempDir::new().expect("a temporary folder");
         let path = folder.path().join("a.json");
         let pending = PendingFile::create(&path).expect("can be written");

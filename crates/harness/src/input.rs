@@ -1,4 +1,4 @@
-//! From the options to a scene that is ready to be rendered.
+//! Loads the scene that the command line asks for.
 
 use crate::options::{PrecisionOption, SceneOptions, SwitchOption};
 use rayweave_contract::{Image, ImageError, Work};
@@ -8,7 +8,7 @@ use rayweave_core::{Arithmetic, Execution, Lanes, Precision, Sampling, Scene, tr
 use rayweave_scene_file::{self as scene_file, SceneFile};
 use std::path::Path;
 
-/// The scene at `path`, or the report's, and what results call it.
+/// Loads the scene at `path`, or the lab report's. Returns its name in results, too.
 pub fn load(path: Option<&Path>) -> Result<(String, SceneFile), String> {
     Ok(match path {
         Some(path) => {
@@ -18,42 +18,41 @@ pub fn load(path: Option<&Path>) -> Result<(String, SceneFile), String> {
     })
 }
 
-/// The most pixels of a picture where each may be a piece of which a record is kept.
+/// The largest number of pixels of an image in which each may be a recorded piece.
 ///
-/// `explain` keeps 32 bytes of each piece of a strategy's quickest rendering. Three of all
-/// strategies deal in pixels: 96 bytes a pixel; tiles are few. While one more rendering is recorded
-/// there is room for half as many pieces again, 48 bytes a pixel; then its gaps are sorted, 8
-/// bytes; and the picture has 12. Together 164 bytes, of 2^23 pixels 1.4 GB.
+/// `explain` keeps 32 bytes for each piece of a strategy's quickest rendering. Three strategies
+/// have pixels as pieces, which takes 96 bytes a pixel. The rendering that is being recorded takes
+/// 48 bytes a pixel, sorting its gaps 8 and the image 12. This is 164 bytes a pixel in total: 1.4
+/// GB for 2^23 pixels.
 ///
-/// `predict` keeps 8 bytes of 16 pixels for each rendering, of which there are 41 at most where
-/// pictures are so large, and twice the 8 bytes a pixel that come of it: 37 bytes a pixel, 0.3 GB.
-/// The picture is there once for each core, 0.1 GB.
+/// `predict` keeps 8 bytes for each 16 pixels of at most 41 renderings, and 16 bytes a pixel of
+/// results. This is 37 bytes a pixel: 0.3 GB. One image for each core takes another 0.1 GB.
 const MAX_PIXELS: u64 = 1 << 23;
 
-/// A scene with the command line's overrides.
+/// A scene with the settings of the command line.
 pub struct Input {
-    /// What results call it.
+    /// The scene's name in results.
     pub name: String,
     pub scene: Scene,
-    /// In pixels.
+    /// Width of the image in pixels.
     pub width: u32,
-    /// In pixels.
+    /// Height of the image in pixels.
     pub height: u32,
     pub execution: Execution,
-    /// Why this precision.
+    /// The reason for the precision.
     pub reason: String,
-    /// Of the scene's meshes, because they have no area.
+    /// The number of triangles without area, which are left out of the scene's meshes.
     skipped_triangles: usize,
 }
 
 impl Input {
-    /// Loads the scene at `path`, or takes the report's.
+    /// Loads the scene at `path`, or the lab report's.
     pub fn load(path: Option<&Path>, options: &SceneOptions) -> Result<Self, String> {
         let share_samples = options.share_samples.single()?;
         Self::load_sharing(path, options, share_samples)
     }
 
-    /// As [`Input::load`], but whether samples are shared is not what the options say.
+    /// Loads a scene like [`Input::load`], with `share_samples` instead of the option.
     pub fn load_sharing(
         path: Option<&Path>,
         options: &SceneOptions,
@@ -67,7 +66,7 @@ impl Input {
         let adaptive = options.adaptive == SwitchOption::On;
         if adaptive && scene.render.sampling != Sampling::Lattice {
             return Err(
-                "--adaptive on: it interpolates the samples of a lattice: take --sampling lattice"
+                "--adaptive on interpolates the samples of a lattice: use --sampling lattice"
                     .to_owned(),
             );
         }
@@ -75,8 +74,8 @@ impl Input {
         let estimate = PrecisionEstimate::of(&scene);
         let (precision, reason) = match options.precision {
             PrecisionOption::Auto => (estimate.precision(), estimate.to_string()),
-            PrecisionOption::F32 => (Precision::F32, "as asked for".to_owned()),
-            PrecisionOption::F64 => (Precision::F64, "as asked for".to_owned()),
+            PrecisionOption::F32 => (Precision::F32, "as requested".to_owned()),
+            PrecisionOption::F64 => (Precision::F64, "as requested".to_owned()),
         };
         scene.render.arithmetic = Arithmetic { formulas: options.formulas.into(), precision };
         let lanes = options.lanes.or(Lanes::suggested(&estimate));
@@ -85,12 +84,12 @@ impl Input {
         Ok(Self { name, scene, width, height, execution, reason, skipped_triangles })
     }
 
-    /// The work of rendering the scene at this size.
+    /// Returns the work of rendering the scene at this size.
     pub fn work(&self, width: u32, height: u32) -> Result<Box<dyn Work + Send>, String> {
         self.work_by(self.execution, width, height)
     }
 
-    /// The same, executed in another way.
+    /// Returns the same work with another execution.
     pub fn work_by(
         &self,
         execution: Execution,
@@ -100,32 +99,32 @@ impl Input {
         tracer(&self.scene, width, height, execution).map_err(|e| format!("{}: {e}", self.name))
     }
 
-    /// A black picture of the size asked for.
-    pub fn picture(&self) -> Result<Image, String> {
+    /// Returns a black image of the requested size.
+    pub fn image(&self) -> Result<Image, String> {
         Image::new(self.width, self.height).map_err(|e: ImageError| e.to_string())
     }
 
-    /// The width and height of the picture, if a record of each pixel can be kept.
+    /// Returns width and height of the image, if memory is enough to record each pixel.
     pub fn recordable_size(&self) -> Result<(u32, u32), String> {
         recordable(self.width, self.height)
     }
 
-    /// What is rendered, and how: two lines, and another one if something of it is left out.
+    /// Returns two lines on scene and arithmetic, and a third one if triangles are left out.
     pub fn describe(&self) -> String {
         let Self { name, width, height, .. } = self;
         let RenderSettings { antialiasing, sampling, adaptive, .. } = self.scene.render;
         let adaptive = if adaptive { " (adaptive)" } else { "" };
-        let picture = format!(
+        let scene = format!(
             "{name}, {width} x {height} pixels, antialiasing {antialiasing} by {sampling}{adaptive}"
         );
-        [Some(picture), Some(self.arithmetic_line()), self.skipped_line()]
+        [Some(scene), Some(self.arithmetic_line()), self.skipped_line()]
             .into_iter()
             .flatten()
             .collect::<Vec<_>>()
             .join("\n")
     }
 
-    /// What of the scene is left out, if anything.
+    /// Returns the line on triangles that are left out, if there are any.
     pub fn skipped_line(&self) -> Option<String> {
         match self.skipped_triangles {
             0 => None,
@@ -134,7 +133,7 @@ impl Input {
         }
     }
 
-    /// Formulas, precision and its reason.
+    /// Returns the line on formulas, precision and the reason for it.
     pub fn arithmetic_line(&self) -> String {
         let Arithmetic { formulas, precision } = self.scene.render.arithmetic;
         format!("arithmetic: {formulas} formulas in {precision}; {}", self.reason)
@@ -144,7 +143,8 @@ impl Input {
 fn recordable(width: u32, height: u32) -> Result<(u32, u32), String> {
     if u64::from(width) * u64::from(height) > MAX_PIXELS {
         return Err(format!(
-            "{width} x {height} pixels are too many to record each: at most {MAX_PIXELS}, use a smaller --size"
+            "{width} x {height} pixels are too many to record each: use a smaller --size, of at \
+             most {MAX_PIXELS} pixels"
         ));
     }
     Ok((width, height))
@@ -155,11 +155,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_largest_picture_of_which_each_pixel_is_recorded() {
+    fn the_largest_image_in_which_each_pixel_is_recorded() {
         assert_eq!(recordable(4096, 2048), Ok((4096, 2048)));
         let error = recordable(2048, 4097).expect_err("a row more");
-        let expected =
-            "2048 x 4097 pixels are too many to record each: at most 8388608, use a smaller --size";
+        let expected = "2048 x 4097 pixels are too many to record each: use a smaller --size, of \
+                        at most 8388608 pixels";
         assert_eq!(error, expected);
         assert!(recordable(65535, 65535).is_err());
     }

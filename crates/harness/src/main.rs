@@ -1,8 +1,9 @@
-//! `rayweave`: proves that all strategies draw the same picture, and measures what each costs.
+//! The `rayweave` program: proves that all strategies render the same image, and measures the cost
+//! of each.
 //!
-//! The glue between the other crates, and the only place that prints: results to standard output,
-//! errors and progress to standard error. Exit status: 0 done and every check passed; 1 a check
-//! failed; 2 the request or its input was wrong, or the machine cannot meet it; 130 interrupted.
+//! It joins the other crates and is the only one that prints: results to standard output, errors
+//! and progress to standard error. Exit status: 0 done and every check passed; 1 a check failed; 2
+//! the request or its input was wrong, or the machine cannot do it; 130 interrupted.
 
 mod commands;
 mod files;
@@ -21,8 +22,9 @@ use commands::{
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-/// Spreads a ray tracer over threads in several ways, proves that all draw the same picture, and
-/// measures what each costs. Without a command: compare on the report's scene.
+/// Spreads a ray tracer over threads by several strategies, proves that all of them render the same
+/// image, and measures the cost of each. Without a command it compares them on the lab report's
+/// scene.
 #[derive(Parser)]
 #[command(version, args_conflicts_with_subcommands = true)]
 struct Cli {
@@ -34,27 +36,27 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
-    /// List the strategies, and why one is unavailable here
+    /// List the strategies, and the reason if one is unavailable here
     Strategies,
-    /// Render a picture to a .png, .ppm or .exr file
+    /// Render an image to a .png, .ppm or .exr file
     Render(render::Arguments),
-    /// Prove that all strategies draw the same picture, bit for bit
+    /// Prove that all strategies render the same image, bit for bit
     Check(check::Arguments),
-    /// Time the strategies side by side and print the table (the default)
+    /// Time the strategies in interleaved rounds and print a table (the default)
     Compare(compare::Arguments),
-    /// Measure what each strategy costs beside its work
+    /// Measure the overheads of each strategy on synthetic work
     Overhead(overhead::Arguments),
-    /// Predict what more threads would make of a picture, and check it with those that are here
+    /// Predict the speed-up on more threads, and check predictions on the threads of this machine
     Predict(predict::Arguments),
-    /// One sample of a comparison
+    /// Measure one sample of a comparison
     #[command(hide = true)]
     Sample(sample::Arguments),
-    /// Measure speed and error of every setting, and say which one to choose
+    /// Measure speed and error of every setting of the tracer, and recommend one
     #[command(alias = "error")]
     Tradeoff(tradeoff::Arguments),
-    /// Say why a strategy loses: where the time of its threads goes
+    /// Show where the time of each thread goes, and why a strategy is slow
     Explain(explain::Arguments),
-    /// Send hard cases through the kernel that renders, results as JSON lines
+    /// Run hard cases of ray against primitive through the tracer's kernel, and score the answers
     Intersect(intersect::Arguments),
 }
 
@@ -65,7 +67,7 @@ enum Outcome {
     Passed,
     /// A check failed.
     Failed,
-    /// The run was interrupted before all was done.
+    /// The run was interrupted before it was complete.
     Interrupted,
 }
 
@@ -97,13 +99,13 @@ fn main() -> ExitCode {
     }
 }
 
-/// Says why there is no result.
+/// Prints the reason why there is no result.
 fn complain(message: &str) {
-    // Nobody is left to tell if standard error is closed.
+    // If standard error is closed, there is no other place for the message.
     let _ = writeln!(io::stderr(), "error: {message}");
 }
 
-/// Prints a result. A reader that has seen enough (`rayweave strategies | head -1`) is no failure.
+/// Prints a result. A closed pipe (`rayweave strategies | head -1`) is no failure.
 fn print(text: &str) -> Result<(), String> {
     match io::stdout().lock().write_all(text.as_bytes()).and_then(|()| io::stdout().flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {

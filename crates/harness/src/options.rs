@@ -1,4 +1,4 @@
-//! The options that several commands share, and how their values are read.
+//! The options that several commands share, and the parsers of their values.
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
@@ -11,26 +11,30 @@ use std::num::{NonZeroU32, NonZeroUsize};
 use std::thread::available_parallelism;
 use std::time::Duration;
 
-/// The most threads that may be asked for.
+/// The largest number of threads.
 const MAX_THREADS: usize = 1024;
 
-/// The longest time limit that may be asked for: a week.
+/// The longest time limit: a week.
 const MAX_SECONDS: u64 = 7 * 24 * 3600;
 
-/// The most tiles a picture may be cut into: with what a tile takes, less than 1 GiB.
+/// The largest number of tiles of an image. They take less than 1 GiB.
 const MAX_TILES: u64 = 1 << 24;
 
-/// What is rendered.
+/// The options that choose the image and its computation.
 #[derive(Args, Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct SceneOptions {
-    /// Size of the picture in pixels, each 1..=65535 [default: the scene's]
+    /// Size of the image in pixels, each 1..=65535 [default: the scene's]
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub size: Option<(u32, u32)>,
-    /// Density: 0 for one ray a pixel, else N for (2 N + 1)^2 on the lattice or N^2 + (N + 1)^2 by
-    /// importance [default: the scene's]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=i64::from(MAX_ANTIALIASING)))]
+    /// Density of samples: 0 is one ray a pixel; N is (2 N + 1)^2 rays on the lattice, or
+    /// N^2 + (N + 1)^2 by importance [default: the scene's]
+    #[arg(
+        long,
+        value_name = "N",
+        value_parser = clap::value_parser!(u32).range(0..=i64::from(MAX_ANTIALIASING))
+    )]
     pub antialiasing: Option<u32>,
-    /// Where the samples of a pixel lie
+    /// Positions of the samples around a pixel
     #[arg(long, value_enum, default_value_t)]
     pub sampling: SamplingOption,
     /// Number type of the tracer
@@ -39,14 +43,14 @@ pub struct SceneOptions {
     /// Formulas of the tracer
     #[arg(long, value_enum, default_value_t)]
     pub formulas: FormulasOption,
-    /// Rays followed side by side, in f32; in f64 half as many
+    /// Rays in a packet with f32; with f64 half as many
     #[arg(long, value_enum, default_value_t)]
     pub lanes: LanesOption,
-    /// Whether lattice points that neighbouring pixels of a tile need are traced once
+    /// Trace the samples that neighbouring pixels of a tile have in common only once
     #[arg(long, value_enum, default_value_t)]
     pub share_samples: SharingOption,
-    /// Whether lattice points are interpolated where the pixels around them look alike: faster,
-    /// another picture
+    /// Interpolate lattice samples where the pixels around them look alike: faster, but it changes
+    /// the image
     #[arg(long, value_enum, default_value_t)]
     pub adaptive: SwitchOption,
     /// Whether rays skip primitives that they cannot hit; the picture is the same
@@ -54,73 +58,73 @@ pub struct SceneOptions {
     pub accel: AccelerationOption,
 }
 
-/// Where the samples of a pixel lie.
+/// The positions of the samples around a pixel.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize, ValueEnum)]
 pub enum SamplingOption {
-    /// On a square lattice, weighted by the filter: what a scene file means
+    /// A square lattice, weighted by the filter; scene files mean this
     #[default]
     Lattice,
-    /// Of equal weight and as dense as the filter is high: half of the rays for the same error
+    /// Equal weights, as dense as the filter is high: half the rays for the same error
     Importance,
 }
 
-/// The number type of the tracer, or the wish to have it chosen.
+/// The number type of the tracer.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize, ValueEnum)]
 pub enum PrecisionOption {
-    /// What the scene needs
+    /// f32, or f64 if the scene needs it
     #[default]
     Auto,
-    /// 24 binary digits
+    /// Single precision, 24 bits
     F32,
-    /// 53 binary digits
+    /// Double precision, 53 bits
     F64,
 }
 
 /// The formulas of the tracer.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize, ValueEnum)]
 pub enum FormulasOption {
-    /// The lab report's, its slips mended: for comparison
+    /// The lab report's formulas with its mistakes corrected, for comparison
     Textbook,
-    /// Those that keep their digits
+    /// Formulas that stay accurate on hard input
     #[default]
     Robust,
 }
 
-/// How many rays are followed side by side.
+/// The number of rays in a packet.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize, ValueEnum)]
 pub enum LanesOption {
-    /// As many as fill a register here; one by one where mirrors scatter neighbouring rays
+    /// Fill a register of this machine; one by one if mirrors scatter neighbouring rays
     #[default]
     Auto,
     /// One by one
     #[value(name = "1")]
     One,
-    /// As many as fill 256 bits
+    /// Fill 256 bits
     #[value(name = "8")]
     Wide256,
-    /// As many as fill 512 bits
+    /// Fill 512 bits
     #[value(name = "16")]
     Wide512,
 }
 
-/// Whether samples are shared.
+/// The ways to share samples.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize, ValueEnum)]
 pub enum SharingOption {
-    /// Within a tile
+    /// Share samples within a tile
     #[default]
     On,
-    /// Each pixel traces its own
+    /// Trace all samples of each pixel
     Off,
-    /// One beside the other: `compare` only
+    /// Measure both ways in the same rounds; `compare` only
     Both,
 }
 
-/// What is not done unless asked for.
+/// A setting that is off by default.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
 pub enum SwitchOption {
-    /// With it
+    /// Enable it
     On,
-    /// Without it
+    /// Disable it
     #[default]
     Off,
 }
@@ -139,7 +143,7 @@ pub enum AccelerationOption {
 /// The size of the tiles.
 #[derive(Args)]
 pub struct TileOption {
-    /// Side of a tile in pixels, for the strategies that deal in tiles
+    /// Side of a tile in pixels, for strategies whose pieces are tiles
     #[arg(long, value_name = "N", value_parser = parse_tile, default_value = "32")]
     tile: NonZeroU32,
 }
@@ -154,7 +158,7 @@ impl From<FormulasOption> for Formulas {
 }
 
 impl LanesOption {
-    /// What is asked for, or else `auto`.
+    /// Returns the requested number, or `auto`.
     pub fn or(self, auto: Lanes) -> Lanes {
         match self {
             Self::Auto => auto,
@@ -175,15 +179,14 @@ impl From<AccelerationOption> for Acceleration {
 }
 
 impl SharingOption {
-    /// For what has room for a single way.
+    /// Returns whether to share samples, for commands that do not take `both`.
     pub fn single(self) -> Result<bool, String> {
         match self {
             Self::On => Ok(true),
             Self::Off => Ok(false),
-            Self::Both => Err(
-                "--share-samples both: only `compare` sets both beside each other, use on or off"
-                    .to_owned(),
-            ),
+            Self::Both => {
+                Err("--share-samples both: only `compare` measures both, use on or off".to_owned())
+            }
         }
     }
 }
@@ -198,24 +201,25 @@ impl From<SamplingOption> for Sampling {
 }
 
 impl TileOption {
-    /// The side of a tile in a picture of this size.
+    /// Returns the side of a tile in an image of this size.
     pub fn of(&self, width: u32, height: u32) -> Result<NonZeroU32, String> {
         checked_tile(self.tile, width, height)
     }
 }
 
-/// A side of a tile that does not cut a picture into more tiles than memory is for.
+/// Returns `tile` if memory is enough for the tiles of an image of this size.
 pub fn checked_tile(tile: NonZeroU32, width: u32, height: u32) -> Result<NonZeroU32, String> {
     let tiles = u64::from(width.div_ceil(tile.get())) * u64::from(height.div_ceil(tile.get()));
     if tiles <= MAX_TILES {
         return Ok(tile);
     }
     Err(format!(
-        "--tile {tile} cuts {width} x {height} pixels into {tiles} tiles: at most {MAX_TILES}, use larger ones"
+        "--tile {tile} cuts {width} x {height} pixels into {tiles} tiles: use a larger one, for at \
+         most {MAX_TILES} tiles"
     ))
 }
 
-/// A strategy by its name, for clap, which suggests one that is written alike.
+/// Returns clap's parser of strategy names, which suggests a similar name after a mistake.
 pub fn strategy_parser() -> impl TypedValueParser<Value = &'static dyn Strategy> {
     let names = STRATEGIES.iter().map(|strategy| strategy.name());
     PossibleValuesParser::new(names).try_map(|name| {
@@ -227,7 +231,7 @@ pub fn strategy_parser() -> impl TypedValueParser<Value = &'static dyn Strategy>
     })
 }
 
-/// Those that were asked for, each once; without any, all that are available here.
+/// Returns the requested strategies, each once, or else all that are available here.
 pub fn chosen(asked_for: &[&'static dyn Strategy]) -> Vec<&'static dyn Strategy> {
     if asked_for.is_empty() {
         rayweave_registry::available()
@@ -236,7 +240,7 @@ pub fn chosen(asked_for: &[&'static dyn Strategy]) -> Vec<&'static dyn Strategy>
     }
 }
 
-/// The line that says which strategies are left out where all are meant; empty if none is.
+/// Returns a line on strategies that are unavailable here, or nothing if none of them is missing.
 pub fn left_out_line(asked_for: &[&'static dyn Strategy]) -> String {
     let unavailable = STRATEGIES.iter().filter(|strategy| strategy.unavailable().is_some());
     let names: Vec<&str> = unavailable.map(|strategy| strategy.name()).collect();
@@ -244,17 +248,17 @@ pub fn left_out_line(asked_for: &[&'static dyn Strategy]) -> String {
         return String::new();
     }
     format!(
-        "left out, since unavailable here: {} (`rayweave strategies` says why)\n",
+        "left out because unavailable here: {} (`rayweave strategies` shows the reason)\n",
         names.join(", ")
     )
 }
 
-/// The side of a tile, for clap.
+/// Parses the side of a tile for clap.
 fn parse_tile(text: &str) -> Result<NonZeroU32, String> {
-    text.parse().map_err(|_| "expected an integer from 1 on".to_owned())
+    text.parse().map_err(|_| "expected an integer of 1 or more".to_owned())
 }
 
-/// A number of threads, for clap.
+/// Parses a number of threads for clap.
 pub fn parse_threads(text: &str) -> Result<NonZeroUsize, String> {
     let threads = text.parse().ok().filter(|threads| (1..=MAX_THREADS).contains(threads));
     threads
@@ -262,8 +266,8 @@ pub fn parse_threads(text: &str) -> Result<NonZeroUsize, String> {
         .ok_or_else(|| format!("expected an integer in 1..={MAX_THREADS}"))
 }
 
-/// A number of threads, or a range of which the ends and the powers of two between them are meant,
-/// for clap.
+/// Parses a number of threads for clap, or a range, which stands for its ends and the powers of two
+/// between them.
 pub fn parse_thread_counts(text: &str) -> Result<Vec<NonZeroUsize>, String> {
     let Some((first, last)) = text.split_once("..") else { return Ok(vec![parse_threads(text)?]) };
     let (first, last) = (parse_threads(first)?, parse_threads(last)?);
@@ -279,7 +283,7 @@ pub fn parse_thread_counts(text: &str) -> Result<Vec<NonZeroUsize>, String> {
     }))
 }
 
-/// Each value once, in the order given.
+/// Returns each value once, in the order given.
 pub fn distinct<T: Clone, K: PartialEq>(values: &[T], key: impl Fn(&T) -> K) -> Vec<T> {
     let mut distinct: Vec<T> = Vec::new();
     for value in values {
@@ -290,12 +294,12 @@ pub fn distinct<T: Clone, K: PartialEq>(values: &[T], key: impl Fn(&T) -> K) -> 
     distinct
 }
 
-/// The number of threads that the machine and this process's quota allow.
+/// Returns the number of threads that the machine and this process's quota allow.
 pub fn all_threads() -> NonZeroUsize {
     available_parallelism().unwrap_or(NonZeroUsize::MIN)
 }
 
-/// A size of a picture, for clap.
+/// Parses the size of an image for clap.
 pub fn parse_size(text: &str) -> Result<(u32, u32), String> {
     let side =
         |text: &str| text.parse().ok().filter(|side| (1..=u32::from(u16::MAX)).contains(side));
@@ -304,7 +308,7 @@ pub fn parse_size(text: &str) -> Result<(u32, u32), String> {
     )
 }
 
-/// A time of a second or more, for clap.
+/// Parses a time of a second or more for clap.
 pub fn parse_seconds(text: &str) -> Result<Duration, String> {
     let seconds = text.parse().ok().filter(|seconds| (1..=MAX_SECONDS).contains(seconds));
     seconds
@@ -312,7 +316,7 @@ pub fn parse_seconds(text: &str) -> Result<Duration, String> {
         .ok_or_else(|| format!("expected whole seconds in 1..={MAX_SECONDS}"))
 }
 
-/// A share in percent, with or without the sign, for clap.
+/// Parses a share in percent for clap, with or without the sign.
 pub fn parse_percent(text: &str) -> Result<f64, String> {
     let number = text.strip_suffix('%').unwrap_or(text).trim_end();
     let percent = number.parse().ok().filter(|percent| (0.001..=100.0).contains(percent));
@@ -321,7 +325,7 @@ pub fn parse_percent(text: &str) -> Result<f64, String> {
         .ok_or_else(|| "expected a percentage in 0.001..=100, as in 1%".to_owned())
 }
 
-/// A peak signal-to-noise ratio, for clap.
+/// Parses a peak signal-to-noise ratio for clap.
 pub fn parse_psnr(text: &str) -> Result<f64, String> {
     let psnr = text.parse().ok().filter(|psnr| (0.0..=200.0).contains(psnr));
     psnr.ok_or_else(|| "expected a number of decibels in 0..=200".to_owned())

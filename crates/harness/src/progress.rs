@@ -1,21 +1,21 @@
-//! How far it is, for who watches a terminal; nobody else sees anything of it.
+//! Progress bars. They appear only on a terminal.
 
 use indicatif::{ProgressBar, ProgressStyle};
 use rayweave_contract::{Tile, Work};
 use std::borrow::Cow;
 use std::time::Duration;
 
-/// A bar on standard error, if that is a terminal.
+/// Returns a bar on standard error, hidden if that is not a terminal.
 pub fn bar(total: u64) -> ProgressBar {
     let style = ProgressStyle::with_template("{bar:32} {percent:>3} %  {msg}  {eta} left")
         .unwrap_or_else(|_| ProgressStyle::default_bar());
     ProgressBar::new(total).with_style(style)
 }
 
-/// A bar of the share that is done. It is taken away with this.
+/// A bar of the share that is done. Dropping it removes the bar.
 pub struct Share(ProgressBar);
 
-/// Of a share's bar.
+/// The resolution of a share's bar.
 const STEPS: f64 = 1000.0;
 
 impl Share {
@@ -23,7 +23,7 @@ impl Share {
         Self(bar(STEPS as u64))
     }
 
-    /// `fraction`, 0 to 1, is done, and `message` goes on.
+    /// Shows that `fraction`, from 0 to 1, is done and that `message` is in progress.
     pub fn show(&self, fraction: f64, message: impl Into<Cow<'static, str>>) {
         self.0.set_message(message);
         self.0.set_position((fraction * STEPS) as u64);
@@ -36,27 +36,27 @@ impl Drop for Share {
     }
 }
 
-/// Work that shows on a bar how many pixels are done.
+/// Work that shows its number of computed pixels on a bar.
 pub struct ProgressWork<'a, W: ?Sized> {
     work: &'a W,
     bar: ProgressBar,
 }
 
 impl<'a, W: Work + ?Sized> ProgressWork<'a, W> {
-    /// Shows `work`, which computes `pixels` pixels.
+    /// Wraps `work`, which computes `pixels` pixels.
     pub fn new(work: &'a W, pixels: u64) -> Self {
         let bar = bar(pixels);
-        // Drawn by a thread of its own ten times a second: one slow tile does not stop the clock.
+        // A thread of its own draws ten times a second, so that the clock runs during a slow tile.
         bar.enable_steady_tick(Duration::from_millis(100));
         Self { work, bar }
     }
 
-    /// Whether anybody watches: standard error is a terminal.
+    /// Returns whether the bar is visible, because standard error is a terminal.
     pub fn is_seen(&self) -> bool {
         !self.bar.is_hidden()
     }
 
-    /// Takes the bar away.
+    /// Removes the bar.
     pub fn finish(&self) {
         self.bar.finish_and_clear();
     }

@@ -1,7 +1,7 @@
-//! Samples of a comparison, each from a process of its own: this program, started again with
-//! `sample` and a job, answers with one sample.
+//! Measures each sample of a comparison in a process of its own: this program, started as `sample`
+//! with a job.
 //!
-//! No waiting pool, spinning team or warmed allocator of one strategy meets another.
+//! Thus no waiting pool, spinning team or warm allocator of one strategy affects another.
 
 use crate::interrupt::Interrupt;
 use crate::options::SceneOptions;
@@ -18,16 +18,16 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// A process counts as stuck when it has taken this many times as long as the slowest before it,
+/// A process counts as stuck after this many times the time of the slowest process before it.
 const PATIENCE: u32 = 100;
 
-/// and no less than this.
+/// The shortest time after which a process counts as stuck.
 const LEAST_PATIENCE: Duration = Duration::from_secs(60);
 
-/// One rendering that is asked for: the argument of `sample`, as JSON.
+/// A request for one rendering: the argument of `sample`, as JSON.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Job {
-    /// The scene file, any name that the system allows; the lab report's without one.
+    /// The scene file with any name that the system allows; `None` is the lab report's scene.
     pub scene: Option<OsString>,
     /// The options of the scene.
     pub options: SceneOptions,
@@ -41,13 +41,13 @@ pub struct Job {
     pub count_rays: bool,
 }
 
-/// The answer that `sample` prints, as JSON: a sample, or why there is none.
+/// The answer that `sample` prints as JSON: a sample, or the reason why there is none.
 pub type Answer = Result<Sample, String>;
 
 /// The executor that starts a process for each rendering of one scene.
 pub struct SubprocessExecutor {
     program: PathBuf,
-    /// The same for all but strategy, threads and counting.
+    /// The part of the job that is the same for all strategies, threads and purposes.
     job: Job,
     begin: Instant,
     /// The longest time that a process took to answer.
@@ -71,8 +71,8 @@ impl SubprocessExecutor {
         let job = serde_json::to_string(&job).map_err(|e| e.to_string())?;
         let patience = self.slowest.map(|slowest| (slowest * PATIENCE).max(LEAST_PATIENCE));
         let text = output(Command::new(&self.program).args(["sample", &job]), patience)?;
-        let answer: Answer =
-            serde_json::from_str(&text).map_err(|e| format!("its process said nonsense: {e}"))?;
+        let answer: Answer = serde_json::from_str(&text)
+            .map_err(|e| format!("the answer of its process is not valid: {e}"))?;
         if answer.is_ok() {
             self.slowest = self.slowest.max(Some(begin.elapsed()));
         }
@@ -93,25 +93,25 @@ impl Executor for SubprocessExecutor {
         self.begin.elapsed()
     }
 
-    /// A terminal interrupts the rendering process too, so none is waited for.
+    /// A terminal interrupts the rendering process too, so there is nothing to wait for.
     fn is_interrupted(&self) -> bool {
         self.interrupt.happened()
     }
 }
 
-/// A process that does not outlive its owner.
+/// A process that ends when this is dropped.
 struct Running(Child);
 
 impl Drop for Running {
     fn drop(&mut self) {
-        // It may have ended by itself: then there is nothing to kill, and nothing to be done about
-        // an error.
+        // An error means that it has ended by itself.
         let _ = self.0.kill();
         let _ = self.0.wait();
     }
 }
 
-/// What a process prints until it ends, or why there is nothing; it is ended after `patience`.
+/// Returns the standard output of a process, or the reason why there is none. The process is killed
+/// after `patience`.
 fn output(command: &mut Command, patience: Option<Duration>) -> Result<String, String> {
     let child = command.stdin(Stdio::null()).stdout(Stdio::piped()).spawn();
     let mut child = Running(child.map_err(|e| format!("its process cannot be started: {e}"))?);
@@ -120,12 +120,13 @@ fn output(command: &mut Command, patience: Option<Duration>) -> Result<String, S
     let read = move || {
         let mut text = String::new();
         let read = stdout.as_mut().map_or(Ok(0), |stdout| stdout.read_to_string(&mut text));
-        // Nobody listens any more when patience has ended.
+        // After `patience` there is no receiver.
         let _ = sender.send(read.map(|_| text));
     };
-    // Sleeps until the process writes or ends: the measured threads do not notice it.
+    // The reader sleeps until the process writes or ends, so it does not disturb the measured
+    // threads.
     let reader = thread::Builder::new().spawn(read);
-    reader.map_err(|e| format!("its process cannot be listened to: {e}"))?;
+    reader.map_err(|e| format!("the output of its process cannot be read: {e}"))?;
     let read = match patience {
         Some(patience) => receiver.recv_timeout(patience),
         None => receiver.recv().map_err(|_| RecvTimeoutError::Disconnected),
@@ -134,7 +135,7 @@ fn output(command: &mut Command, patience: Option<Duration>) -> Result<String, S
         Ok(Ok(text)) if !text.is_empty() => Ok(text),
         Err(RecvTimeoutError::Timeout) => {
             let seconds = patience.unwrap_or_default().as_secs();
-            Err(format!("no answer after {seconds} s: a deadlock? Its process was ended"))
+            Err(format!("no answer after {seconds} s, perhaps a deadlock: its process was killed"))
         }
         Ok(_) | Err(RecvTimeoutError::Disconnected) => Err(match child.0.wait() {
             Ok(status) => format!("its process ended without an answer: {status}"),
@@ -164,14 +165,14 @@ mod tests {
         assert!(missing.starts_with("its process cannot be started: "), "{missing}");
     }
 
-    /// Catches a process that goes on after nobody waits for it any more.
+    /// Catches a process that keeps running after the program stops waiting for it.
     #[test]
     fn a_stuck_process_is_ended() {
         let folder = tempfile::TempDir::new().expect("a temporary folder");
         let file = folder.path().join("pid");
         let script = format!("echo $$ > {}; exec sleep 1000", file.display());
         let error = shell(&script, Some(Duration::from_secs(1))).expect_err("stuck");
-        assert_eq!(error, "no answer after 1 s: a deadlock? Its process was ended");
+        assert_eq!(error, "no answer after 1 s, perhaps a deadlock: its process was killed");
         let pid = std::fs::read_to_string(&file).expect("its number").trim().to_owned();
         let alive = Command::new("sh").args(["-c", &format!("kill -0 {pid} 2>/dev/null")]).status();
         assert!(!alive.expect("a shell").success(), "{pid} is alive");

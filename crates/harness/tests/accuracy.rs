@@ -1,4 +1,4 @@
-//! `rayweave tradeoff` and `rayweave intersect`, as their users meet them.
+//! `rayweave tradeoff` and `rayweave intersect`: their output, files and exit status.
 
 mod program;
 
@@ -6,7 +6,7 @@ use program::{files_in, folder, json, rayweave, repository, scene};
 use serde_json::Value;
 use std::fs;
 
-/// Catches a setting left out, a format that others cannot read, a picture that is not written.
+/// Catches a missing setting, a format that others cannot read, and an image that is not written.
 #[test]
 fn tradeoff_writes_every_setting() {
     let folder = folder();
@@ -29,7 +29,7 @@ fn tradeoff_writes_every_setting() {
     for text in ["textbook f32", "textbook f64", "robust f32", "robust f64", "\n289\n"] {
         assert!(svg.contains(text), "{text}");
     }
-    // The reference; a picture and a difference for each of the front and the report's own.
+    // The reference, and an image and a difference for each of the front and the lab report's.
     let on_front = results.iter().filter(|r| r["pareto"] == true).count();
     let pictures = files_in(&folder.path().join("p"));
     assert!(
@@ -37,20 +37,19 @@ fn tradeoff_writes_every_setting() {
         "{on_front}: {pictures:?}"
     );
     assert!(pictures.contains(&"textbook-f32-25-lattice-rays-4-bounces-difference.png".to_owned()));
-    for text in
-        ["For 30 dB choose ", "whole scene", "cylinders", "Every timed picture was verified."]
+    for text in ["For 30 dB choose ", "whole scene", "cylinders", "Every timed image was verified."]
     {
         assert!(table.contains(text), "{text} in {table}");
     }
 }
 
-/// Catches depths or kinds of primitives that are tried though the scene has none of it.
+/// Catches depths or kinds of primitives that are tried although the scene has none.
 #[test]
 fn tradeoff_tries_what_the_scene_has() {
     let folder = folder();
-    let plain = "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\nup = [0, 1, 0]\nfocal_length = 1\n\
-                 screen_width = 1\n[material.a]\ncolor = [1, 1, 1]\n[[sphere]]\ncenter = [0, 0, 0]\n\
-                 radius = 1\nmaterial = \"a\"\n";
+    let plain = "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\nup = [0, 1, 0]\n\
+                 focal_length = 1\nscreen_width = 1\n[material.a]\ncolor = [1, 1, 1]\n\
+                 [[sphere]]\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"a\"\n";
     fs::write(folder.path().join("ball.toml"), plain).expect("written");
     // `error` is the command's old name, which still works.
     let table =
@@ -76,7 +75,7 @@ fn malformed_cases_are_named_by_their_line() {
     assert!(message.starts_with("error: bad.jsonl: line 3, column "), "{message}");
     let message = rayweave(folder.path(), "intersect none.jsonl").expect_refusal();
     assert!(message.starts_with("error: none.jsonl: cannot be read"), "{message}");
-    // The last two would write over what they are to read.
+    // The last two would overwrite their input.
     for arguments in [
         "tradeoff --target-psnr NaN",
         "tradeoff --size 3",
@@ -90,8 +89,8 @@ fn malformed_cases_are_named_by_their_line() {
     assert_eq!(files_in(folder.path()), ["bad.jsonl"]);
 }
 
-/// Catches results that do not belong to the cases, a score that is not shown, and a status that
-/// hides a wrong answer: the textbook's formulas leak where the robust ones do not.
+/// Catches results of other cases, a missing score, and a status that hides a wrong answer: the
+/// textbook formulas leak where the robust ones do not.
 #[test]
 fn intersect_answers_each_case_and_scores_them() {
     let folder = folder();
@@ -118,9 +117,9 @@ fn intersect_answers_each_case_and_scores_them() {
     assert_eq!(ids(&written), cases);
 }
 
-/// Catches an option that is read and not used.
+/// Catches an option that is parsed and not used.
 #[test]
-fn sampling_changes_the_picture() {
+fn sampling_changes_the_image() {
     let folder = folder();
     let digest = |options: &str| {
         let room = scene("room.toml");

@@ -1,5 +1,4 @@
-//! The command line as its users meet it: the program is run, and what it prints, writes and
-//! returns is looked at.
+//! The command line: the program runs, and its output, files and exit status are checked.
 
 mod program;
 
@@ -21,7 +20,7 @@ fn strategies_lists_the_registry_in_its_order() {
 }
 
 #[test]
-fn render_works_from_any_folder_and_names_the_picture_after_the_scene() {
+fn render_works_from_any_folder_and_names_the_image_after_the_scene() {
     let folder = folder();
     let text = rayweave(folder.path(), "render --size 20x10").expect_success();
     assert_eq!(files_in(folder.path()), ["report.png"]);
@@ -43,7 +42,7 @@ fn render_gives_the_same_file_with_every_strategy() {
             rayweave(folder.path(), &arguments).expect_success();
         }
         let read =
-            |format| fs::read(folder.path().join(format!("{name}.{format}"))).expect("the picture");
+            |format| fs::read(folder.path().join(format!("{name}.{format}"))).expect("the image");
         assert!(read("ppm").starts_with(b"P6\n33 21 255\n"));
         assert!(read("exr").starts_with(&[0x76, 0x2f, 0x31, 0x01]));
         assert!(read("png").starts_with(b"\x89PNG"));
@@ -53,17 +52,17 @@ fn render_gives_the_same_file_with_every_strategy() {
 }
 
 #[test]
-fn render_replaces_a_picture_and_leaves_nothing_beside_it() {
+fn render_replaces_an_image_and_leaves_nothing_beside_it() {
     let folder = folder();
     fs::write(folder.path().join("a.ppm"), "old").expect("written");
     rayweave(folder.path(), "render --size 8x8 --antialiasing 0 -o a.ppm").expect_success();
     assert_eq!(files_in(folder.path()), ["a.ppm"]);
-    assert!(fs::read(folder.path().join("a.ppm")).expect("the picture").starts_with(b"P6"));
+    assert!(fs::read(folder.path().join("a.ppm")).expect("the image").starts_with(b"P6"));
 }
 
 #[cfg(unix)]
 #[test]
-fn a_picture_is_an_ordinary_file_and_a_link_stays_a_link() {
+fn an_image_is_an_ordinary_file_and_a_link_stays_a_link() {
     use std::os::unix::fs::{PermissionsExt, symlink};
     let folder = folder();
     symlink("target.ppm", folder.path().join("link.ppm")).expect("a link");
@@ -133,10 +132,10 @@ fn check_holds_and_says_so() {
 }
 
 #[test]
-fn triangles_without_area_are_told() {
+fn triangles_without_area_are_reported() {
     let folder = folder();
-    let text = "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\nup = [0, 1, 0]\nfocal_length = 1.0\n\
-                screen_width = 1.0\n[material.grey]\ncolor = [0.5, 0.5, 0.5]\n\
+    let text = "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\nup = [0, 1, 0]\n\
+                focal_length = 1.0\nscreen_width = 1.0\n[material.grey]\ncolor = [0.5, 0.5, 0.5]\n\
                 [[mesh]]\npath = \"mesh.obj\"\nmaterial = \"grey\"\n";
     fs::write(folder.path().join("mesh.toml"), text).expect("written");
     let run = |faces: &str| {
@@ -187,7 +186,7 @@ fn requests_that_cannot_be_met_are_refused_before_any_work() {
         ("render --share-samples maybe", "both"),
         ("render --share-samples both", "only `compare`"),
         ("check --share-samples both --json a.json", "only `compare`"),
-        ("render --adaptive on --sampling importance", "take --sampling lattice"),
+        ("render --adaptive on --sampling importance", "use --sampling lattice"),
         ("predict --strategy sequential", "name one that starts threads"),
         ("render -o a.jpg", ".png, .ppm or .exr"),
         ("render -o a", ".png, .ppm or .exr"),
@@ -215,7 +214,7 @@ fn requests_that_cannot_be_met_are_refused_before_any_work() {
 }
 
 #[test]
-fn each_malformed_scene_gives_one_message_and_no_picture() {
+fn each_malformed_scene_gives_one_message_and_no_image() {
     let corpus = repository().join("crates/scene-file/tests/malformed");
     let folder = folder();
     let scenes: Vec<String> =
@@ -232,8 +231,7 @@ fn each_malformed_scene_gives_one_message_and_no_picture() {
     assert!(files_in(folder.path()).is_empty());
 }
 
-/// Catches a rendering on fewer threads than were asked for, or that a setting changes their
-/// number.
+/// Catches a rendering on fewer threads than requested, and a setting that changes their number.
 #[test]
 fn openmp_has_the_threads_asked_for_or_none() {
     let strategy = rayweave_registry::find("openmp-static").expect("a strategy");
@@ -252,7 +250,8 @@ fn openmp_has_the_threads_asked_for_or_none() {
         message.starts_with("error: openmp-static: cannot start 3 threads: OpenMP gave 2 "),
         "{message}"
     );
-    let check = "check --size 16x16 --tile 4 --threads 3 --strategy openmp-static,openmp-dynamic,openmp-guided";
+    let check = "check --size 16x16 --tile 4 --threads 3 \
+                 --strategy openmp-static,openmp-dynamic,openmp-guided";
     for (variable, value) in
         [("OMP_NUM_THREADS", "1"), ("OMP_DYNAMIC", "true"), ("OMP_WAIT_POLICY", "active")]
     {
@@ -261,7 +260,7 @@ fn openmp_has_the_threads_asked_for_or_none() {
     }
 }
 
-/// A user who may start few threads: the rest cannot be started.
+/// Runs as a user who may start only a few threads.
 #[cfg(target_os = "linux")]
 #[test]
 fn threads_that_cannot_be_started_are_an_error_that_names_the_strategy() {
@@ -284,7 +283,7 @@ fn threads_that_cannot_be_started_are_an_error_that_names_the_strategy() {
         .filter(|strategy| strategy.threads() != rayweave_contract::Threads::None);
     for strategy in parallel {
         let name = strategy.name();
-        // A dozen of them have enough to do not to end before the next is started.
+        // The image is large enough to keep a dozen threads busy until the next one is started.
         let size = "--size 200x200 --threads 1000";
         let message = run(&format!("render {size} --strategy {name} -o a.png")).expect_refusal();
         assert!(

@@ -1,4 +1,4 @@
-//! `rayweave compare` and what it starts, `rayweave sample`, as their users meet them.
+//! `rayweave compare`, and `rayweave sample`, which it starts: output, files and exit status.
 
 mod program;
 
@@ -7,22 +7,24 @@ use serde_json::Value;
 use std::fs;
 use std::path::Path;
 
-/// The answer of `sample` to a job for `scene`, which is JSON.
+/// Returns the answer of `sample` to a job for `scene`, which is JSON.
 fn answer(folder: &Path, scene: &str, count_rays: bool) -> Value {
-    let options = r#""size":[9,7],"antialiasing":1,"sampling":"Importance","precision":"F64","formulas":"Textbook","lanes":"One","share_samples":"Off","adaptive":"Off","accel":"None""#;
-    let job = format!(
-        r#"{{"scene":{scene},"options":{{{options}}},"tile":4,"strategy":"tile-queue","threads":2,"count_rays":{count_rays}}}"#
-    );
+    let image = r#""size":[9,7],"antialiasing":1,"sampling":"Importance","precision":"F64""#;
+    let execution = r#""formulas":"Textbook","lanes":"One","share_samples":"Off","adaptive":"Off""#;
+    let accel = r#""accel":"None""#;
+    let job = format!(r#"{{"scene":{scene},"options":{{{image},{execution},{accel}}},"tile":4,"#)
+        + &format!(r#""strategy":"tile-queue","threads":2,"count_rays":{count_rays}}}"#);
     let answer = rayweave(folder, &format!("sample {job}")).expect_success();
     serde_json::from_str(&answer).expect("a line of JSON")
 }
 
-/// Catches a child that renders something else than was asked for: each option has to reach it.
+/// Catches an option that does not reach the process of a sample.
 #[test]
 fn a_sample_renders_as_the_comparison_says() {
     let folder = folder();
-    let options = "--size 9x7 --antialiasing 1 --sampling importance --precision f64 --formulas textbook \
-                   --lanes 1 --share-samples off --adaptive off --accel none";
+    let options = "--size 9x7 --antialiasing 1 --sampling importance --precision f64 \
+                   --formulas textbook --lanes 1 --share-samples off --adaptive off \
+                   --accel none";
     let rendered = rayweave(folder.path(), &format!("render {options} -o a.ppm")).expect_success();
     let digest = rendered.split("digest ").nth(1).expect("a digest")[..16].to_owned();
     let compare =
@@ -69,7 +71,7 @@ fn a_scene_may_be_called_like_an_option() {
     assert!(text.starts_with("--help.toml, 4 x 4 pixels"), "{text}");
 }
 
-/// Catches limits that nobody keeps: 40 rounds where a goal asks for more, or more where it is met.
+/// Catches ignored limits: 40 rounds although the goal needs more, or more although it is met.
 #[test]
 fn rounds_follow_the_goal_and_the_limit() {
     let folder = folder();
@@ -98,7 +100,7 @@ fn rounds_follow_the_goal_and_the_limit() {
 }
 
 #[test]
-fn noise_is_told() {
+fn noise_is_reported() {
     let folder = folder();
     let arguments = "compare --size 4x4 --strategy sequential --time-limit 1 --json a.json";
     let text = rayweave(folder.path(), arguments).expect_success();
@@ -116,7 +118,8 @@ fn noise_is_told() {
 #[test]
 fn compare_writes_what_other_programs_read() {
     let folder = folder();
-    let arguments = "compare --size 24x16 --antialiasing 1 --threads 1,2 --time-limit 1 --json a.json --csv a.csv";
+    let arguments = "compare --size 24x16 --antialiasing 1 --threads 1,2 --time-limit 1 \
+                     --json a.json --csv a.csv";
     let table = rayweave(folder.path(), arguments).expect_success();
     let object = json(&folder.path().join("a.json"));
     assert_eq!(object["schema"], 2);
@@ -146,19 +149,19 @@ fn compare_writes_what_other_programs_read() {
     assert_eq!(csv.lines().count(), 1 + results.len());
 }
 
-/// The list of results.
+/// Returns the list of results.
 fn results(object: &Value) -> Vec<Value> {
     object["results"].as_array().expect("a list").clone()
 }
 
-/// What is traced where samples are shared: of `sides` a lattice of density `density` and what lies
-/// around it.
+/// Returns the number of shared samples: a lattice of density `density` with its margin in each
+/// tile of `sides`.
 fn lattice_points(density: u64, sides: &[(u64, u64)]) -> u64 {
     let points = |side: u64| density * (side + 1) + 1;
     sides.iter().map(|&(width, height)| points(width) * points(height)).sum()
 }
 
-/// The rays of a strategy's results, all of them the same, and how many of them are redundant.
+/// Returns the rays of a strategy and the redundant ones, which are equal in all of its results.
 fn rays(results: &[Value], strategy: &str) -> (u64, u64) {
     let results = results.iter();
     let mut found: Vec<(u64, u64)> = results
@@ -214,7 +217,8 @@ fn compare_counts_the_rays_of_the_tiles_that_each_strategy_cuts() {
 #[test]
 fn compare_does_not_count_adaptive_samples() {
     let folder = folder();
-    let arguments = "compare --size 8x8 --antialiasing 2 --adaptive on --strategy sequential --time-limit 1 --json a.json";
+    let arguments = "compare --size 8x8 --antialiasing 2 --adaptive on --strategy sequential \
+                     --time-limit 1 --json a.json";
     let table = rayweave(folder.path(), arguments).expect_success();
     assert!(table.contains("antialiasing 2 (adaptive)") && !table.contains("/px"), "{table}");
     let object = json(&folder.path().join("a.json"));
@@ -223,11 +227,12 @@ fn compare_does_not_count_adaptive_samples() {
 }
 
 #[test]
-fn compare_says_how_the_picture_is_computed() {
+fn compare_says_how_the_image_is_computed() {
     let folder = folder();
     let run = |options: &str| {
         let arguments = format!(
-            "compare --size 8x8 --threads 1 --strategy sequential --time-limit 1 {options} --json a.json"
+            "compare --size 8x8 --threads 1 --strategy sequential --time-limit 1 {options} \
+             --json a.json"
         );
         let table = rayweave(folder.path(), &arguments).expect_success();
         let object = json(&folder.path().join("a.json"));
@@ -243,16 +248,17 @@ fn compare_says_how_the_picture_is_computed() {
         run("--antialiasing 1 --lanes 8 --precision f64 --share-samples off --search exhaustive");
     assert_eq!(line, "computed: 4 rays side by side, samples not shared, acceleration none");
     assert_eq!(keys, [Value::from(4), Value::from(false), Value::from("none")]);
-    // Its mirrors scatter neighbours.
+    // Mirrors scatter neighbouring rays there.
     let imbalance = repository().join("scenes/imbalance.toml");
     let (line, _) = run(&format!("{} --antialiasing 1", imbalance.display()));
     assert_eq!(line, "computed: rays one by one, samples shared, acceleration auto");
 }
 
 #[test]
-fn compare_sets_shared_samples_beside_their_own() {
+fn compare_measures_both_ways_to_share_samples() {
     let folder = folder();
-    let arguments = "compare --size 24x16 --antialiasing 2 --threads 2 --share-samples both --time-limit 1 --json a.json --csv a.csv";
+    let arguments = "compare --size 24x16 --antialiasing 2 --threads 2 --share-samples both \
+                     --time-limit 1 --json a.json --csv a.csv";
     let text = rayweave(folder.path(), arguments).expect_success();
     let place = |part: &str| text.find(part).unwrap_or_else(|| panic!("{part}: {text}"));
     let (shared, unshared) = (place("samples shared"), place("samples not shared"));
@@ -319,7 +325,7 @@ fn a_baseline_says_what_has_changed() {
         ),
         (
             "--baseline old.json --tile 2 --json new.json",
-            "old.json: cannot be a baseline: tile is 32 there and 2 here: use the same scene and options",
+            "old.json: cannot be a baseline: tile is 32 there and 2 here: use the same scene and",
         ),
     ] {
         let message = rayweave(folder.path(), &format!("{small} {arguments}")).expect_refusal();
@@ -353,9 +359,9 @@ fn scenes_stand_beside_each_other() {
     for (arguments, expected) in [
         ("--scenes all", "go to the repository's folder"),
         ("--scenes missing.toml", "missing.toml: cannot be read"),
-        ("a.toml --scenes b.toml", "name all scenes there"),
+        ("a.toml --scenes b.toml", "--scenes must name all scenes"),
         ("--scenes a.toml --share-samples both", "on or off"),
-        ("--scenes a.json", "nothing may be written over"),
+        ("--scenes a.json", "no input or result is overwritten"),
         ("--scenes a.toml,./a.toml", "./a.toml is named twice: name it once"),
     ] {
         let message = rayweave(folder.path(), &format!("{small} {arguments}")).expect_refusal();
@@ -363,8 +369,8 @@ fn scenes_stand_beside_each_other() {
     }
 }
 
-/// A comparison that would take a minute, interrupted as a terminal does it: all processes of the
-/// group at once, when it has begun `samples` processes.
+/// Interrupts a comparison of a minute when it has started `samples` processes. All processes of
+/// the group get the signal at once, as from a terminal.
 #[cfg(target_os = "linux")]
 fn interrupted_at(samples: usize, options: &str) -> (program::Run, Option<Value>) {
     use std::collections::BTreeSet;
@@ -398,7 +404,7 @@ fn children_of(parent: u32) -> Vec<u32> {
     let processes = fs::read_dir("/proc").expect("/proc").filter_map(Result::ok);
     let numbers = processes.filter_map(|entry| entry.file_name().to_str()?.parse().ok());
     let is_child = |number: &u32| {
-        // "pid (name) state parent ...", gone in the meantime perhaps.
+        // "pid (name) state parent ..."; the process may have ended meanwhile.
         let stat = fs::read_to_string(format!("/proc/{number}/stat")).unwrap_or_default();
         let rest = stat.rsplit(')').next().unwrap_or_default();
         rest.split_whitespace().nth(1) == Some(&parent.to_string())
@@ -406,13 +412,11 @@ fn children_of(parent: u32) -> Vec<u32> {
     numbers.filter(is_child).collect()
 }
 
-/// Catches what was measured thrown away, and the sample that the same Ctrl-C ended told as a
-/// strategy's failure.
+/// Catches lost measurements, and a sample ended by the same Ctrl-C reported as a failed strategy.
 #[cfg(target_os = "linux")]
 #[test]
-fn who_interrupts_it_gets_the_rounds_so_far() {
-    // The reference's picture, three rows that warm up, six rounds of three, and the next has
-    // begun.
+fn an_interruption_shows_the_complete_rounds() {
+    // The reference's image, the warm-up of three rows, six rounds of three, and one sample more.
     let (run, object) = interrupted_at(1 + 3 + 6 * 3 + 1, "--size 4x4 --antialiasing 0");
     assert_eq!((run.status, run.stderr.as_str()), (130, ""), "{}", run.stdout);
     assert!(
@@ -420,7 +424,7 @@ fn who_interrupts_it_gets_the_rounds_so_far() {
         "{}",
         run.stdout
     );
-    let object = object.expect("what was asked for");
+    let object = object.expect("the file");
     let rounds = object["results"][0]["rounds"].as_u64().expect("a number") as usize;
     assert!(rounds >= 6 && object["results"][0]["interrupted"] == true, "{object}");
     for result in object["results"].as_array().expect("a list") {
@@ -431,11 +435,11 @@ fn who_interrupts_it_gets_the_rounds_so_far() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn who_interrupts_it_early_is_told_that_there_is_nothing() {
+fn an_early_interruption_reports_that_there_is_no_table() {
     // The first sample would take minutes.
     let (run, object) = interrupted_at(1, "--size 2000x2000 --antialiasing 32");
     assert_eq!((run.status, run.stdout.as_str()), (130, ""), "{}", run.stderr);
-    let told = "error: interrupted with 0 complete rounds, of fewer than 6 there is no table: let it run longer, or \
-                take a smaller --size\n";
-    assert_eq!((run.stderr.as_str(), object), (told, None));
+    let expected = "error: interrupted with 0 complete rounds, of fewer than 6 there is no table: \
+                    let it run longer, or take a smaller --size\n";
+    assert_eq!((run.stderr.as_str(), object), (expected, None));
 }

@@ -1,4 +1,4 @@
-//! Every command that the documents show is run, so that none of them grows stale.
+//! Runs every command that the documents show, so that none of them becomes outdated.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,19 +11,18 @@ const DOCUMENTS: [&str; 5] =
 /// Commands about the whole repository: CI runs them (`.ci/run`), a test cannot.
 const RUN_BY_CI: [&str; 4] = ["cargo run --release", "cargo test", "cargo bench", ".ci/run"];
 
-/// Other tests run what these call: the example strategy is built, the examples' libraries are
-/// tested, and fuzzing has no end.
+/// Commands that other tests cover, and fuzzing, which has no end.
 const RUN_ELSEWHERE: [&str; 4] =
     ["dealt-rows", "--example hard-cases", "--example leaks", "cargo fuzz"];
 
-/// Cases that the documents' commands read, by the name that they are given there.
+/// The file of cases that the documents' commands read, and its name there.
 const CASES: (&str, &str) = ("crates/accuracy/corpus/hard-cases.jsonl", "cases.jsonl");
 
 fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// The lines of the blocks of shell commands, without comments.
+/// Returns the commands in the blocks of shell code, without comments.
 fn commands(document: &str) -> Vec<String> {
     let mut commands = Vec::new();
     let mut inside = false;
@@ -38,14 +37,14 @@ fn commands(document: &str) -> Vec<String> {
     commands
 }
 
-/// Small pictures and short times do: what is tested is that the command is understood and
+/// Returns the arguments with a small size and a short time. The test only checks that the command
 /// succeeds.
 fn small(arguments: &str) -> String {
     let takes_size = ["render", "check", "compare", "tradeoff", "explain", "predict", "-"]
         .iter()
         .any(|word| arguments.starts_with(word));
     if arguments.starts_with("tradeoff") {
-        // Each of its pictures takes thousands of rays a pixel.
+        // Its reference takes thousands of rays a pixel.
         return format!("{} --size 4x3", arguments.replace("--size 60x60", ""));
     }
     let mut small = arguments.to_owned();
@@ -94,8 +93,7 @@ fn the_documents_commands_work() {
                 .output()
                 .expect("the program starts");
             let said = String::from_utf8_lossy(&output.stderr).into_owned();
-            // The textbook's formulas are wrong in some cases, which is what the command is there
-            // to show.
+            // The command shows that the textbook formulas are wrong in some cases.
             let expected =
                 i32::from(arguments.starts_with("intersect") && arguments.contains("textbook"));
             let status = output.status.code();

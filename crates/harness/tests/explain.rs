@@ -1,4 +1,4 @@
-//! `rayweave explain` as its users meet it.
+//! `rayweave explain`: its output, files and exit status.
 
 mod program;
 
@@ -8,15 +8,15 @@ use std::fs;
 const CAUSES: [&str; 6] =
     ["redundant", "slowdown", "dispatch", "contention", "imbalance", "serial"];
 
-/// Catches a strategy whose account leaves something out: it would not add up, however small the
-/// picture.
+/// Catches a time breakdown that leaves something out and so does not add up.
 #[test]
 fn explain_writes_what_it_measured_of_every_strategy() {
     let folder = folder();
     let names: Vec<&str> =
         rayweave_registry::available().iter().map(|strategy| strategy.name()).collect();
     let arguments = format!(
-        "explain --size 40x30 --threads 2 --tile 8 --time-limit 2 --strategy {} --json a.json --trace a.trace.json --pictures drawn",
+        "explain --size 40x30 --threads 2 --tile 8 --time-limit 2 --strategy {} --json a.json \
+         --trace a.trace.json --pictures drawn",
         names.join(",")
     );
     let text = rayweave(folder.path(), &arguments).expect_success();
@@ -36,11 +36,11 @@ fn explain_writes_what_it_measured_of_every_strategy() {
         let threads = result["threads_recorded"].as_array().expect("a list");
         let pixels: u64 = threads.iter().filter_map(|thread| thread["pixels"].as_u64()).sum();
         assert_eq!(pixels, 40 * 30, "{name}");
-        // Asked for two, it has one all the same.
+        // It has one thread although two are requested.
         let threads = if *name == "sequential" { "1 thread" } else { "2 threads" };
         assert!(text.contains(&format!("{name} on {threads}: ")), "{text}");
     }
-    assert!(text.contains("imbalance") && text.contains("adds up to "), "{text}");
+    assert!(text.contains("imbalance") && text.contains("explained: "), "{text}");
     assert!(text.contains("\nnoise: ") && object["noise"]["wall_s"].as_f64() > Some(0.0), "{text}");
 
     let trace = json(&folder.path().join("a.trace.json"));
@@ -56,8 +56,8 @@ fn explain_writes_what_it_measured_of_every_strategy() {
     expected.sort();
     assert_eq!(files_in(&folder.path().join("drawn")), expected);
     let owners = fs::read(folder.path().join("drawn").join(format!("{}-threads.png", names[0])));
-    // Width and height stand at byte 16, big end first.
-    let owners = owners.expect("the picture");
+    // Width and height are at byte 16 in big-endian order.
+    let owners = owners.expect("the image");
     assert_eq!((&owners[1..4], &owners[16..24]), (&b"PNG"[..], &[0, 0, 0, 40, 0, 0, 0, 30][..]));
 }
 
@@ -65,7 +65,7 @@ fn explain_writes_what_it_measured_of_every_strategy() {
 fn without_a_strategy_the_recommended_one_is_explained() {
     let text = rayweave(folder().path(), "explain --size 16x16").expect_success();
     let name = rayweave_registry::recommended().name();
-    assert_eq!(text.matches("adds up to ").count(), 1, "{text}");
+    assert_eq!(text.matches("explained: ").count(), 1, "{text}");
     assert!(text.contains(&format!("\n{name} on ")), "{text}");
 }
 

@@ -1,4 +1,4 @@
-//! `overhead` and `predict` as their users meet them: what they print, write and return.
+//! `rayweave overhead` and `rayweave predict`: their output, files and exit status.
 
 mod program;
 
@@ -42,7 +42,7 @@ fn overhead_has_a_row_a_strategy() {
         }
         assert!(row["error"].is_null());
     }
-    // Nobody is faster than himself; and threads are worth more than a step of 2 ns.
+    // The reference never breaks even with itself, and dispatch costs more than a step of 2 ns.
     assert!(reference["break_even_side"].is_null());
     assert!(is_positive(&recommended["metg_ns"]), "{recommended}");
 }
@@ -52,8 +52,8 @@ fn predict_goes_beyond_the_threads_that_are_here() {
     let folder = folder();
     let name = rayweave_registry::recommended().name();
     let arguments = format!(
-        "predict {} --size 40x30 --tile 4 --time-limit 2 --antialiasing 0 --threads 1..8,100 --strategy {name} --json a.json \
-         --svg a.svg",
+        "predict {} --size 40x30 --tile 4 --time-limit 2 --antialiasing 0 --threads 1..8,100 \
+         --strategy {name} --json a.json --svg a.svg",
         scene("room.toml")
     );
     let text = rayweave(folder.path(), &arguments).expect_success();
@@ -93,7 +93,7 @@ fn predict_goes_beyond_the_threads_that_are_here() {
     assert_eq!(object["assumptions"].as_array().map(Vec::len), Some(5));
 }
 
-/// Catches a strategy whose rule no simulation takes, or whose pieces nobody timed.
+/// Catches a strategy whose policy cannot be simulated, or whose pieces are not timed.
 #[test]
 fn predict_takes_every_strategy_that_starts_threads() {
     let folder = folder();
@@ -125,7 +125,7 @@ fn requests_that_cannot_be_met_are_refused() {
         ("predict --tile 0", "0"),
         (
             "predict --size 4097x2048",
-            "too many to record each: at most 8388608, use a smaller --size",
+            "too many to record each: use a smaller --size, of at most 8388608 pixels",
         ),
         ("overhead --threads 1025", "1..=1024"),
         ("overhead --strategy nope", "sequential"),

@@ -1,4 +1,4 @@
-//! `rayweave check`: proof that all strategies draw the same picture.
+//! `rayweave check`: proves that all strategies render the same image.
 
 use crate::files::{PendingFile, distinct_files};
 use crate::input::Input;
@@ -12,22 +12,22 @@ use rayweave_contract::Strategy;
 use rayweave_measure::check::{Check, CheckCase, Verdict};
 use rayweave_measure::computing_threads::TIMEOUT;
 use rayweave_measure::machine::Machine;
-use rayweave_output as report;
+use rayweave_output as output;
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::path::PathBuf;
 
 #[derive(Args)]
 pub struct Arguments {
-    /// Scene file [default: the report's scene, built in]
+    /// Scene file [default: the lab report's scene, which is built in]
     scene: Option<PathBuf>,
     /// Strategies to check [default: all]
     #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = strategy_parser())]
     strategy: Vec<&'static dyn Strategy>,
-    /// Numbers of computing threads [default: 1, 2, 3, all and twice as many for awkward sizes,
-    /// all for the full size]
+    /// Numbers of computing threads [default: all cores for the full size; for several small sizes
+    /// 1, 2, 3, all and twice all]
     #[arg(long, value_name = "N", value_delimiter = ',', value_parser = parse_threads)]
     threads: Vec<NonZeroUsize>,
-    /// Sides of a tile in pixels [default: 1, 7 and 32 for awkward sizes, 32 for the full size]
+    /// Sides of a tile in pixels [default: 32 for the full size; 1, 7 and 32 for small sizes]
     #[arg(long, value_name = "N", value_delimiter = ',')]
     tile: Vec<NonZeroU32>,
     /// Write the result as JSON
@@ -37,16 +37,15 @@ pub struct Arguments {
     options: SceneOptions,
 }
 
-/// Pictures in which rows, columns or tiles come out uneven, or there are fewer pixels than
-/// threads.
+/// Image sizes with uneven rows, columns or tiles, or with fewer pixels than threads.
 const AWKWARD_SIZES: [(u32, u32); 5] = [(1, 1), (1, 50), (50, 1), (7, 3), (97, 61)];
 
 pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     distinct_files(&[&arguments.scene, &arguments.json])?;
     let json = arguments.json.as_deref().map(PendingFile::create).transpose()?;
     let input = Input::load(arguments.scene.as_deref(), &arguments.options)?;
-    // Before anything is checked: whether the full picture can be made at all.
-    input.picture()?;
+    // Fail before any check if the full image cannot exist.
+    input.image()?;
     arguments
         .tile
         .iter()
@@ -83,11 +82,11 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     check(&[(input.width, input.height)], &[all], &[32])?;
 
     let machine = Machine::here();
-    let facts = report::machine::text(&machine);
+    let facts = output::machine::text(&machine);
     let left_out = left_out_line(&arguments.strategy);
-    let text = report::check::text(&verdict);
+    let text = output::check::text(&verdict);
     print(&format!("{}\n{facts}\n\n{}\n{left_out}", input.describe(), text.trim_end()))?;
-    json.map_or(Ok(()), |file| file.finish(report::check::json(&verdict, &machine).as_bytes()))?;
+    json.map_or(Ok(()), |file| file.finish(output::check::json(&verdict, &machine).as_bytes()))?;
     Ok(if verdict.passed() { Outcome::Passed } else { Outcome::Failed })
 }
 

@@ -1,4 +1,4 @@
-//! `rayweave compare`, and `rayweave` alone: the table.
+//! `rayweave compare`, and `rayweave` alone: times all strategies side by side.
 
 use crate::files::{PendingFile, distinct_files, named_twice};
 use crate::input::Input;
@@ -26,7 +26,7 @@ use std::time::Duration;
 
 #[derive(Args)]
 pub struct Arguments {
-    /// Scene file [default: the report's scene, built in]
+    /// Scene file [default: the lab report's scene, which is built in]
     pub scene: Option<PathBuf>,
     #[command(flatten)]
     pub options: Options,
@@ -37,17 +37,17 @@ pub struct Options {
     /// Strategies to time [default: all]
     #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = strategy_parser())]
     strategy: Vec<&'static dyn Strategy>,
-    /// Numbers of computing threads [default: what the machine and its quota allow]
+    /// Numbers of computing threads [default: all that the machine and its quota allow]
     #[arg(long, value_name = "N", value_delimiter = ',', value_parser = parse_threads)]
     threads: Vec<NonZeroUsize>,
     #[command(flatten)]
     tile: TileOption,
-    /// Measure until each speed-up is known so well: half of its interval, as a share of it; or
-    /// until time is up
+    /// Measure until every speed-up is known to +-PERCENT (half of its 95 % interval), or until the
+    /// time limit is reached
     #[arg(long, value_name = "PERCENT", value_parser = parse_percent)]
     precision_goal: Option<f64>,
-    /// Begin no round after 8 that would end later than this; without this option 40 rounds are
-    /// enough, or two and a half minutes
+    /// Start no round that would end later than this, after at least 8 rounds [default: 40 rounds
+    /// or 150 seconds, whichever comes first]
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
     time_limit: Option<Duration>,
     /// Write the result as JSON, raw samples included
@@ -56,29 +56,29 @@ pub struct Options {
     /// Write the table as CSV
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Compare on several scenes beside each other: scene files, or `all` for those in
-    /// scenes/loads, which separate the strategies. The time limit is for all together
+    /// Compare on several scenes side by side: scene files, or `all` for those in scenes/loads,
+    /// which separate the strategies. All scenes share the time limit
     #[arg(long, value_name = "FILE", value_delimiter = ',')]
     scenes: Vec<PathBuf>,
     /// Write the table as Markdown
     #[arg(long, value_name = "FILE")]
     markdown: Option<PathBuf>,
-    /// Say what has changed since an earlier run of the same scene with the same settings, by the
-    /// JSON that it wrote
+    /// Show the changes since an earlier run with the same scenes and settings. FILE is the JSON
+    /// that it wrote
     #[arg(long, value_name = "FILE")]
     baseline: Option<PathBuf>,
     #[command(flatten)]
     scene_options: SceneOptions,
 }
 
-/// Where `--scenes all` finds its scenes: each of them separates some strategies from others.
+/// The folder of `--scenes all`. Each of its scenes separates some strategies from others.
 const LOADS: &str = "scenes/loads";
 
 pub fn run(scene: Option<&Path>, options: &Options) -> Result<Outcome, String> {
     let scenes = scenes(scene, options)?;
     let files = Files::create(&scenes, options)?;
     let baseline = options.baseline.as_deref().map(read_baseline).transpose()?;
-    // All of them before the first is measured: a mistake in the last is reported at once.
+    // Load all scenes before the first is measured, to report a mistake in the last one at once.
     let inputs = scenes.iter().map(|scene| load(scene.as_deref(), options));
     let inputs = inputs.collect::<Result<Vec<Input>, _>>()?;
     if let Some((path, baseline)) = options.baseline.as_deref().zip(baseline.as_ref()) {
@@ -86,7 +86,7 @@ pub fn run(scene: Option<&Path>, options: &Options) -> Result<Outcome, String> {
         let subjects = subjects.collect::<Result<Vec<Subject>, _>>()?;
         comparable(baseline, &subjects).map_err(|reason| no_baseline(path, &reason))?;
     }
-    // Below a single scene's table.
+    // These lines are printed below the table of a single scene.
     let notes = match &inputs[..] {
         [input] => {
             let skipped = input.skipped_line().map(|line| line + "\n").unwrap_or_default();
@@ -122,18 +122,22 @@ pub fn run(scene: Option<&Path>, options: &Options) -> Result<Outcome, String> {
     })
 }
 
-/// The scenes to compare on; `None` is the report's.
+/// Returns the scenes to compare on. `None` is the lab report's.
 fn scenes(scene: Option<&Path>, options: &Options) -> Result<Vec<Option<PathBuf>>, String> {
     match &options.scenes[..] {
         [] => Ok(vec![scene.map(Path::to_owned)]),
         _ if options.scene_options.share_samples.single().is_err() => {
-            Err("--scenes: choose --share-samples on or off".to_owned())
+            Err("--scenes cannot show both ways of sharing: use --share-samples on or off"
+                .to_owned())
         }
-        _ if scene.is_some() => Err("--scenes: name all scenes there, and none besides".to_owned()),
+        _ if scene.is_some() => {
+            Err("--scenes must name all scenes: remove the other scene file".to_owned())
+        }
         [all] if all.as_os_str() == "all" => {
             let cannot = |e: io::Error| {
                 format!(
-                    "--scenes all: {LOADS} cannot be read: {e}; go to the repository's folder, or name files"
+                    "--scenes all: {LOADS} cannot be read: {e}; go to the repository's folder, or \
+                     name files"
                 )
             };
             let entries = fs::read_dir(LOADS).map_err(cannot)?;
@@ -153,7 +157,7 @@ fn scenes(scene: Option<&Path>, options: &Options) -> Result<Vec<Option<PathBuf>
     }
 }
 
-/// The files that were asked for.
+/// The files to write.
 struct Files {
     json: Option<PendingFile>,
     csv: Option<PendingFile>,
@@ -198,29 +202,30 @@ fn ways(options: &Options) -> &'static [bool] {
     }
 }
 
-/// A scene that can be measured as the options say.
+/// Loads a scene and checks that it can be measured with these options.
 fn load(scene: Option<&Path>, options: &Options) -> Result<Input, String> {
     let ways = ways(options);
     let input = Input::load_sharing(scene, &options.scene_options, ways[0])?;
     let settings = &input.scene.render;
     if ways.len() > 1 && (!settings.has_lattice() || settings.adaptive) {
         return Err(
-            "--share-samples both: without a lattice, or with an adaptive one, there is no choice"
+            "--share-samples both needs a full lattice: use --sampling lattice, --adaptive off and \
+             --antialiasing 1 or more"
                 .to_owned(),
         );
     }
     if let Some(path) = scene.filter(|path| !path.is_file()) {
         return Err(format!(
-            "{}: is read anew for every sample, and this can be read only once: use a regular file",
+            "{}: cannot be read again for every sample: use a regular file",
             path.display()
         ));
     }
-    input.picture()?;
+    input.image()?;
     options.tile.of(input.width, input.height)?;
     Ok(input)
 }
 
-/// Why there is no figure of a scene.
+/// The reason why a scene has no figures.
 enum Unmeasured {
     Interrupted(String),
     Failed(String),
@@ -232,7 +237,7 @@ impl From<String> for Unmeasured {
     }
 }
 
-/// Measures on one scene after the other, until it is interrupted: on one of them at least.
+/// Measures on one scene after the other until an interruption. The first scene is always measured.
 fn measure_all(
     scenes: &[Option<PathBuf>],
     inputs: &[Input],
@@ -249,7 +254,7 @@ fn measure_all(
         };
         match measure(scene.as_deref(), input, options, scenes.len(), &interrupt, show) {
             Ok(records) => all.extend(records),
-            // The scenes before are worth showing.
+            // Show the scenes that were measured.
             Err(Unmeasured::Interrupted(_)) if !all.is_empty() => break,
             Err(unmeasured) => return Err(unmeasured),
         }
@@ -257,7 +262,7 @@ fn measure_all(
     Ok(all)
 }
 
-/// Measures on one of `scenes` scenes: a record for each row and each way to compute the image.
+/// Measures on one of `scenes` scenes. Returns a record for each row and each way to share samples.
 fn measure(
     scene: Option<&Path>,
     input: &Input,
@@ -290,7 +295,7 @@ fn measure(
         rayweave_registry::reference(),
         &entries(options),
         &mut executors,
-        // Drawn here and nowhere else: between the timed spans.
+        // The bar is drawn only here, between the timed spans.
         |at| show(at.fraction, format!("{}, threads: {}", at.strategy, at.threads)),
     );
     let comparisons = comparisons.map_err(|error| match error {
@@ -322,7 +327,7 @@ fn tile_costs(input: &Input, tile: NonZeroU32) -> Result<TileCosts, String> {
     TileCosts::of(&*work, input.width, input.height, tile).map_err(|e| e.to_string())
 }
 
-/// What is compared with the reference.
+/// Returns the strategies and numbers of threads that are compared with the reference.
 fn entries(options: &Options) -> Vec<Entry<'static>> {
     let strategies = chosen(&options.strategy);
     let threads = if options.threads.is_empty() {
@@ -334,21 +339,21 @@ fn entries(options: &Options) -> Vec<Entry<'static>> {
     pairs.map(|(strategy, threads)| Entry { strategy, threads }).collect()
 }
 
-/// How long to measure `ways` ways to compute the picture of one of `scenes` scenes.
+/// Returns the protocol for one of `scenes` scenes with `ways` ways to share samples.
 fn protocol(options: &Options, ways: usize, scenes: usize) -> Protocol {
     let default = Protocol::default();
-    // Who says when it is enough wants no other end.
+    // A time limit or a precision goal replaces the limit on rounds.
     let asked = options.time_limit.is_some() || options.precision_goal.is_some();
     Protocol {
         max_rounds: if asked { usize::MAX } else { default.max_rounds },
-        // Each way gets the time that it would have had alone.
+        // Each way gets as much time as it would get alone.
         budget: options.time_limit.unwrap_or(default.budget * ways as u32) / scenes as u32,
         goal: options.precision_goal,
         ..default
     }
 }
 
-/// Returns the subjects of a scene: one for each way to compute the image.
+/// Returns the subjects of a scene, one for each way to share samples.
 fn subjects<'a>(
     input: &'a Input,
     options: &'a Options,

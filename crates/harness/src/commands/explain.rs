@@ -1,4 +1,4 @@
-//! `rayweave explain`: why a strategy loses what it loses.
+//! `rayweave explain`: shows where the time of each thread goes.
 
 use crate::files::{PendingFile, distinct_files};
 use crate::image_file::ImageFormat;
@@ -21,36 +21,35 @@ use std::time::Duration;
 
 #[derive(Args)]
 pub struct Arguments {
-    /// Scene file [default: the report's scene, built in]
+    /// Scene file [default: the lab report's scene, which is built in]
     scene: Option<PathBuf>,
     /// Strategies to explain [default: the recommended one]
     #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = strategy_parser())]
     strategy: Vec<&'static dyn Strategy>,
-    /// Number of computing threads [default: what the machine and its quota allow]
+    /// Number of computing threads [default: all that the machine and its quota allow]
     #[arg(long, value_name = "N", value_parser = parse_threads)]
     threads: Option<NonZeroUsize>,
     #[command(flatten)]
     tile: TileOption,
-    /// Begin no round after 6 that would end later than this, all strategies together; without this
-    /// option 200 rounds are enough, or 20 seconds a strategy
+    /// Start no round that would end later than this, after at least 6 rounds; for all strategies
+    /// together [default: 200 rounds or 20 seconds a strategy, whichever comes first]
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
     time_limit: Option<Duration>,
     /// Write the result as JSON
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// Write the time lines in the trace event format, for Perfetto (ui.perfetto.dev) or
-    /// chrome://tracing
+    /// Write the time lines as trace events, for Perfetto (ui.perfetto.dev) or chrome://tracing
     #[arg(long, value_name = "FILE")]
     trace: Option<PathBuf>,
-    /// Write of each strategy the time line, who computed which pixel, and what each cost into this
-    /// folder
+    /// Write three images of each strategy into this folder: the time line, the thread of each
+    /// pixel, and the time of each pixel
     #[arg(long, value_name = "FOLDER")]
     pictures: Option<PathBuf>,
     #[command(flatten)]
     options: SceneOptions,
 }
 
-/// A strategy takes three renderings a round, one of them on a single thread.
+/// The protocol for one strategy. A round has three renderings of it, one on a single thread.
 const PROTOCOL: Protocol = Protocol {
     min_rounds: 6,
     max_rounds: 200,
@@ -71,11 +70,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
         if arguments.strategy.is_empty() { &recommended } else { &arguments.strategy },
         |s| s.name(),
     );
-    let pictures = arguments
-        .pictures
-        .as_deref()
-        .map(|folder| picture_files(folder, &strategies))
-        .transpose()?;
+    let pictures =
+        arguments.pictures.as_deref().map(|folder| image_files(folder, &strategies)).transpose()?;
     let tile = arguments.tile.of(width, height)?;
     let work = input.work(width, height)?;
     let protocol = Protocol { budget: PROTOCOL.budget * strategies.len() as u32, ..PROTOCOL };
@@ -114,23 +110,23 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     print(&format!("{}\n\n{}\n", input.describe(), view.text()))?;
     json.map_or(Ok(()), |file| file.finish(view.json().as_bytes()))?;
     trace.map_or(Ok(()), |file| file.finish(view.trace().as_bytes()))?;
-    pictures.map_or(Ok(()), |files| write_pictures(files, &view))?;
+    pictures.map_or(Ok(()), |files| write_images(files, &view))?;
     Ok(Outcome::Passed)
 }
 
-/// The pictures of one strategy.
-struct PictureFiles {
+/// The images of one strategy.
+struct ImageFiles {
     timeline: PendingFile,
     owners: PendingFile,
     cost: PendingFile,
 }
 
-/// The folder, and that all of them can be written to it, before anything is measured.
-fn picture_files(folder: &Path, strategies: &[&dyn Strategy]) -> Result<Vec<PictureFiles>, String> {
+/// Creates the folder and checks that all images can be written, before anything is measured.
+fn image_files(folder: &Path, strategies: &[&dyn Strategy]) -> Result<Vec<ImageFiles>, String> {
     fs::create_dir_all(folder).map_err(|e| format!("{}: cannot be made: {e}", folder.display()))?;
     let of = |strategy: &&dyn Strategy| {
         let file = |what| PendingFile::create(&folder.join(format!("{}-{what}", strategy.name())));
-        Ok(PictureFiles {
+        Ok(ImageFiles {
             timeline: file("timeline.svg")?,
             owners: file("threads.png")?,
             cost: file("cost.svg")?,
@@ -139,7 +135,7 @@ fn picture_files(folder: &Path, strategies: &[&dyn Strategy]) -> Result<Vec<Pict
     strategies.iter().map(of).collect()
 }
 
-fn write_pictures(files: Vec<PictureFiles>, view: &ExplanationView<'_>) -> Result<(), String> {
+fn write_images(files: Vec<ImageFiles>, view: &ExplanationView<'_>) -> Result<(), String> {
     for (files, row) in files.into_iter().zip(&view.explanation.rows) {
         files.timeline.finish(view.timeline(row)?.as_bytes())?;
         files

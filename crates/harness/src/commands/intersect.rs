@@ -1,4 +1,4 @@
-//! `rayweave intersect`: hard cases through the kernel that renders.
+//! `rayweave intersect`: runs hard cases through the tracer's kernel and scores the answers.
 
 use crate::files::{PendingFile, distinct_files};
 use crate::options::FormulasOption;
@@ -13,7 +13,7 @@ use std::path::PathBuf;
 
 #[derive(Args)]
 pub struct Arguments {
-    /// Cases, one JSON object a line
+    /// File of cases, one JSON object a line
     cases: PathBuf,
     /// Number type of the kernel
     #[arg(long, value_enum, default_value_t = KernelPrecision::F32)]
@@ -21,18 +21,18 @@ pub struct Arguments {
     /// Formulas of the kernel
     #[arg(long, value_enum, default_value_t)]
     formulas: FormulasOption,
-    /// Write the results there and the table to standard output [default: the results to standard
-    /// output, the table to standard error]
-    #[arg(long, value_name = "OUT")]
+    /// Write the results to this file and the table to standard output [default: the results to
+    /// standard output, the table to standard error]
+    #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 }
 
-/// A single ray has no scene that could choose.
+/// The number type of the kernel. There is no `auto`, because single rays have no scene.
 #[derive(Clone, Copy, ValueEnum)]
 enum KernelPrecision {
-    /// 24 binary digits
+    /// Single precision, 24 bits
     F32,
-    /// 53 binary digits
+    /// Double precision, 53 bits
     F64,
 }
 
@@ -69,7 +69,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
         }
         None => {
             print(&String::from_utf8_lossy(&lines))?;
-            // Only people miss the table when standard error is closed.
+            // The table is additional: a closed standard error is no failure.
             let _ = write!(io::stderr(), "{table}");
         }
     }

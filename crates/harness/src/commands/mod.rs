@@ -1,4 +1,4 @@
-//! One file a subcommand.
+//! The subcommands, one in each file.
 
 pub mod check;
 pub mod compare;

@@ -1,4 +1,4 @@
-//! `rayweave overhead`: what strategies cost beside their work.
+//! `rayweave overhead`: measures the costs of strategies beyond their work.
 
 use crate::files::PendingFile;
 use crate::options::{all_threads, chosen, parse_seconds, parse_threads, strategy_parser};
@@ -18,11 +18,11 @@ pub struct Arguments {
     /// Strategies to measure [default: all]
     #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = strategy_parser())]
     strategy: Vec<&'static dyn Strategy>,
-    /// Number of computing threads [default: what the machine and its quota allow]
+    /// Number of computing threads [default: all that the machine and its quota allow]
     #[arg(long, value_name = "N", value_parser = parse_threads)]
     threads: Option<NonZeroUsize>,
-    /// Begin no round after 6 that would end later than this; without this option 20 rounds are
-    /// enough, or 20 seconds
+    /// Start no round that would end later than this, after at least 6 rounds [default: 20 rounds
+    /// or 20 seconds, whichever comes first]
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
     time_limit: Option<Duration>,
     /// Write the result as JSON
@@ -30,7 +30,7 @@ pub struct Arguments {
     json: Option<PathBuf>,
 }
 
-/// Six rounds, for a 95 % interval, and up to 20 if they fit into 20 seconds.
+/// The protocol: six rounds for a 95 % interval, and up to 20 that fit into 20 seconds.
 const PROTOCOL: Protocol = Protocol {
     min_rounds: 6,
     max_rounds: 20,

@@ -1,4 +1,4 @@
-//! `rayweave predict`: what more threads would make of a picture.
+//! `rayweave predict`: predicts speed-ups on more threads.
 
 use crate::files::{PendingFile, distinct_files};
 use crate::input::Input;
@@ -19,32 +19,37 @@ use std::time::Duration;
 
 #[derive(Args)]
 pub struct Arguments {
-    /// Scene file [default: the report's scene, built in]
+    /// Scene file [default: the lab report's scene, which is built in]
     scene: Option<PathBuf>,
-    /// Strategies to predict [default: all that start threads]
+    /// Strategies to predict; each must start threads [default: all that do]
     #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = strategy_parser())]
     strategy: Vec<&'static dyn Strategy>,
-    /// Numbers of computing threads, each 1..=1024: a list, in which A..B stands for A, B and the
-    /// powers of two between
-    #[arg(long, value_name = "N,A..B", value_delimiter = ',', value_parser = parse_thread_counts, default_value = "1..64")]
+    /// Numbers of computing threads, each 1..=1024. A..B is A, B and the powers of two between
+    #[arg(
+        long,
+        value_name = "N,A..B",
+        value_delimiter = ',',
+        value_parser = parse_thread_counts,
+        default_value = "1..64"
+    )]
     threads: Vec<Counts>,
     #[command(flatten)]
     tile: TileOption,
-    /// Begin no round after 8 that would end later than this, the overheads of threads not counted;
-    /// without this option 40 rounds are enough, or two and a half minutes
+    /// Start no round that would end later than this, after at least 8 rounds. Measuring the
+    /// overheads of threads is extra [default: 40 rounds or 150 seconds, whichever comes first]
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
     time_limit: Option<Duration>,
     /// Write the result as JSON
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// Write a plot
+    /// Write a plot as SVG
     #[arg(long, value_name = "FILE")]
     svg: Option<PathBuf>,
     #[command(flatten)]
     options: SceneOptions,
 }
 
-/// What one value of the list stands for.
+/// The numbers of threads of one value in the list.
 type Counts = Vec<NonZeroUsize>;
 
 pub fn run(arguments: &Arguments) -> Result<Outcome, String> {

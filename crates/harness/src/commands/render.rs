@@ -1,4 +1,4 @@
-//! `rayweave render`: a picture.
+//! `rayweave render`: renders an image to a file.
 
 use crate::files::{PendingFile, distinct_files};
 use crate::image_file::ImageFormat;
@@ -16,15 +16,15 @@ use std::time::Instant;
 
 #[derive(Args)]
 pub struct Arguments {
-    /// Scene file [default: the report's scene, built in]
+    /// Scene file [default: the lab report's scene, which is built in]
     scene: Option<PathBuf>,
-    /// Picture to write: .png, .ppm or .exr (linear floats) [default: the scene's name, .png]
+    /// Image to write: .png, .ppm or .exr (linear floats) [default: the scene's name with .png]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Strategy to render with [default: the recommended one]
     #[arg(long, value_name = "NAME", value_parser = strategy_parser())]
     strategy: Option<&'static dyn Strategy>,
-    /// Number of computing threads [default: what the machine and its quota allow]
+    /// Number of computing threads [default: all that the machine and its quota allow]
     #[arg(long, value_name = "N", value_parser = parse_threads)]
     threads: Option<NonZeroUsize>,
     #[command(flatten)]
@@ -47,36 +47,36 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let strategy = arguments.strategy.unwrap_or_else(rayweave_registry::recommended);
     let threads = arguments.threads.unwrap_or_else(all_threads);
     let plan = Plan { threads, tile: arguments.tile.of(input.width, input.height)? };
-    // What has no threads of its own computes on one, whatever was asked for.
+    // A strategy without threads of its own computes on one, whatever the request is.
     let computing = strategy.threads().computing_threads(threads);
-    let mut picture = input.picture()?;
+    let mut image = input.image()?;
     let begin = Instant::now();
     let work = input.work(input.width, input.height)?;
     let preparing = begin.elapsed().as_secs_f64();
     let mut renderer = strategy.prepare(plan).map_err(|e| e.to_string())?;
-    let progress = ProgressWork::new(&*work, picture.pixels().len() as u64);
-    // Only where it is seen: the bar takes its share of the time.
+    let progress = ProgressWork::new(&*work, image.pixels().len() as u64);
+    // The bar takes time, so it is used only where it is visible.
     let work: &dyn Work = if progress.is_seen() { &progress } else { &*work };
     let begin = Instant::now();
-    let result = renderer.render(work, &mut picture);
+    let result = renderer.render(work, &mut image);
     let seconds = begin.elapsed().as_secs_f64();
     progress.finish();
     result.map_err(|e| e.to_string())?;
 
-    file.finish(&format.encode(&picture)?)?;
+    file.finish(&format.encode(&image)?)?;
     let stats = if arguments.stats { stats(&input, preparing)? } else { String::new() };
     print(&format!(
         "{}\n{}, threads: {computing}, {seconds:.6} s, digest {}\n{stats}{}\nwritten to {}\n",
         input.describe(),
         strategy.name(),
-        picture.digest().short(),
+        image.digest().short(),
         rayweave_output::machine::text(&Machine::here()),
         path.display(),
     ))?;
     Ok(Outcome::Passed)
 }
 
-/// What of the tracer the scene uses; each line ends.
+/// Returns the parts of the tracer that the scene uses. Each line has a newline at its end.
 fn stats(input: &Input, preparing: f64) -> Result<String, String> {
     let analysis =
         Analysis::of(&input.scene, &input.execution).map_err(|e| format!("{}: {e}", input.name))?;
@@ -84,13 +84,14 @@ fn stats(input: &Input, preparing: f64) -> Result<String, String> {
     let settings = &input.scene.render;
     let shared = settings.has_lattice() && (share_samples || settings.adaptive);
     let lanes = lanes.count(settings.arithmetic.precision);
-    let samples = if shared { "shared by the pixels of a tile" } else { "each pixel's own" };
+    let samples = if shared { "shared by the pixels of a tile" } else { "traced by each pixel" };
     Ok(format!(
-        "{analysis}\npackets: {lanes} rays; samples: {samples}\nprepared in {preparing:.6} s, a tree's building included\n"
+        "{analysis}\npackets: {lanes} rays; samples: {samples}\n\
+         prepared in {preparing:.6} s, acceleration structures included\n"
     ))
 }
 
-/// In the working folder, named after the scene.
+/// Returns a path in the working folder that is named after the scene.
 fn default_output(scene: Option<&Path>) -> PathBuf {
     let name = scene.and_then(Path::file_name).unwrap_or("report.toml".as_ref());
     Path::new(name).with_extension("png")

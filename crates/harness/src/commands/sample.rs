@@ -1,4 +1,4 @@
-//! `rayweave sample`: the process that `compare` starts for each of its samples. Not for people, so
+//! `rayweave sample`: the process that `compare` starts for each of its samples. It is internal, so
 //! `--help` does not list it.
 
 use crate::input::Input;
@@ -19,14 +19,14 @@ pub struct Arguments {
     job: Job,
 }
 
-/// A job, for clap.
+/// Parses a job for clap.
 fn parse_job(text: &str) -> Result<Job, String> {
     serde_json::from_str(text).map_err(|e| format!("not a job in JSON: {e}"))
 }
 
 pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     end_with_parent();
-    // The parent reads the answer and nothing else, so a failure is an answer, too.
+    // The parent reads nothing but the answer, so a failure is an answer too.
     let answer = measure(&arguments.job);
     print(&format!("{}\n", serde_json::to_string(&answer).map_err(|e| e.to_string())?))?;
     Ok(Outcome::Passed)
@@ -52,6 +52,6 @@ fn measure(job: &Job) -> Answer {
 /// measurement.
 fn end_with_parent() {
     #[cfg(target_os = "linux")]
-    // Where it is refused, the process ends by itself when it has rendered.
+    // If the system refuses, the process ends by itself after rendering.
     let _ = nix::sys::prctl::set_pdeathsig(nix::sys::signal::Signal::SIGKILL);
 }

@@ -1,4 +1,4 @@
-//! `rayweave strategies`: what there is.
+//! `rayweave strategies`: lists the strategies.
 
 use crate::{Outcome, print};
 use rayweave_contract::{Plan, Threads};
@@ -20,7 +20,7 @@ pub fn run() -> Result<Outcome, String> {
             strategy.summary(),
             ""
         );
-        // Tried out, not guessed: what cannot be prepared here says why.
+        // Preparing a strategy shows whether it is available, and the reason if not.
         let plan = Plan { threads: NonZeroUsize::MIN, tile: NonZeroU32::MIN };
         let failure = || strategy.prepare(plan).err().map(|error| error.to_string());
         if let Some(reason) = strategy.unavailable().map(str::to_owned).or_else(failure) {

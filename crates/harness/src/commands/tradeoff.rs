@@ -1,4 +1,4 @@
-//! `rayweave tradeoff`: speed against error.
+//! `rayweave tradeoff`: measures speed and error of every setting of the tracer.
 
 use crate::files::{PendingFile, distinct_files};
 use crate::image_file::ImageFormat;
@@ -21,13 +21,13 @@ use std::time::Duration;
 
 #[derive(Args)]
 pub struct Arguments {
-    /// Scene file [default: the report's scene, built in]
+    /// Scene file [default: the lab report's scene, which is built in]
     scene: Option<PathBuf>,
-    /// Size of the pictures in pixels, each 1..=65535 [default: the scene's shape in 3600 pixels,
-    /// or fewer if it takes long]
+    /// Size of the images in pixels, each 1..=65535 [default: the scene's shape with 3600 pixels,
+    /// or fewer if rendering is slow]
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     size: Option<(u32, u32)>,
-    /// Name the fastest setting with this PSNR or more
+    /// Recommend the fastest setting with this PSNR or more
     #[arg(long, value_name = "DB", default_value_t = 40.0, value_parser = parse_psnr)]
     target_psnr: f64,
     /// Write every setting as JSON, raw samples included
@@ -36,23 +36,22 @@ pub struct Arguments {
     /// Write every setting as CSV
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Write a plot
+    /// Write a plot as SVG
     #[arg(long, value_name = "FILE")]
     svg: Option<PathBuf>,
-    /// Write the reference, the pictures of the Pareto front and of the report's own setting, and
+    /// Write the reference, the images of the Pareto front and of the lab report's setting, and
     /// their differences (FLIP) into this folder
     #[arg(long, value_name = "FOLDER")]
     pictures: Option<PathBuf>,
 }
 
-/// Pixels of a picture, at most, unless a size is asked for.
+/// The number of pixels of an image, unless `--size` gives another.
 const PIXELS: f64 = 3600.0;
 
-/// The longest that a round may take, as estimated: six of them, and the warm-up, in under two
-/// minutes.
+/// The longest estimated round. Six of them and the warm-up take less than two minutes.
 const ROUND: Duration = Duration::from_secs(12);
 
-/// Six rounds, for a 95 % interval, and no more of them than fit into a minute.
+/// The protocol: six rounds for a 95 % interval, and up to 20 that fit into a minute.
 const PROTOCOL: Protocol = Protocol {
     min_rounds: 6,
     max_rounds: 20,
@@ -61,7 +60,7 @@ const PROTOCOL: Protocol = Protocol {
     seed: 1,
 };
 
-/// The side of a tile of an untimed picture: small, because the pictures are.
+/// The side of a tile in untimed images, which are small.
 const TILE: NonZeroU32 = NonZeroU32::new(8).expect("8 is not 0");
 
 pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
@@ -70,7 +69,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let [json, csv, svg] = files.map(|path| path.as_deref().map(PendingFile::create).transpose());
     let (json, csv, svg) = (json?, csv?, svg?);
     let (name, file) = input::load(arguments.scene.as_deref())?;
-    // The folder, and that it can be written to, before minutes of measuring.
+    // Create the folder and check that it is writable before minutes of measuring.
     let reference_file = arguments.pictures.as_deref().map(reference_file).transpose()?;
     let scene = file.scene;
     let size = arguments.size.map_or_else(|| default_size(&scene, file.image), Ok)?;
@@ -104,13 +103,13 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     svg.map_or(Ok(()), |file| file.finish(view.svg()?.as_bytes()))?;
     if let (Some(folder), Some(file)) = (&arguments.pictures, reference_file) {
         file.finish(&ImageFormat::Png.encode(&study.reference.image)?)?;
-        write_pictures(folder, &scene, &study, size)?;
+        write_images(folder, &scene, &study, size)?;
     }
     Ok(if study.repeatable { Outcome::Passed } else { Outcome::Failed })
 }
 
-/// The scene's shape in [`PIXELS`] pixels, or in a half, a quarter ... of them if all settings
-/// would take too long.
+/// Returns the scene's shape in [`PIXELS`] pixels, or in a half, a quarter ... of them if a round
+/// would take longer than [`ROUND`].
 fn default_size(scene: &Scene, image: ImageSize) -> Result<(u32, u32), String> {
     let mut pixels = PIXELS;
     let pilot = shrunk(image, PIXELS / 4.0);
@@ -128,22 +127,22 @@ fn default_size(scene: &Scene, image: ImageSize) -> Result<(u32, u32), String> {
     Ok(shrunk(image, pixels))
 }
 
-/// The shape of `image` in `pixels` pixels, or a few less.
+/// Returns the shape of `image` in at most `pixels` pixels.
 fn shrunk(image: ImageSize, pixels: f64) -> (u32, u32) {
     let (width, height) = (f64::from(image.width), f64::from(image.height));
     let scale = (pixels / (width * height)).sqrt().min(1.0);
-    // Of a very long picture the short side is one pixel, and the long one as many as there are.
+    // The short side of a very long image is one pixel, and the long side the rest.
     let side = |side: f64| ((side * scale).floor() as u32).clamp(1, (pixels as u32).max(1));
     (side(width), side(height))
 }
 
-/// On all threads.
+/// Renders on all threads.
 fn render(work: &dyn Work, (width, height): (u32, u32)) -> Result<Image, String> {
-    let mut picture = Image::new(width, height).map_err(|e| e.to_string())?;
+    let mut rendered = Image::new(width, height).map_err(|e| e.to_string())?;
     let plan = Plan { threads: all_threads(), tile: TILE };
     let mut renderer = rayweave_registry::recommended().prepare(plan).map_err(|e| e.to_string())?;
-    renderer.render(work, &mut picture).map_err(|e| e.to_string())?;
-    Ok(picture)
+    renderer.render(work, &mut rendered).map_err(|e| e.to_string())?;
+    Ok(rendered)
 }
 
 fn reference_file(folder: &Path) -> Result<PendingFile, String> {
@@ -151,23 +150,23 @@ fn reference_file(folder: &Path) -> Result<PendingFile, String> {
     PendingFile::create(&folder.join("reference.png"))
 }
 
-/// What is worth a look: the picture and its difference from the truth.
-fn write_pictures(
+/// Writes the images worth a look, and their differences from the reference.
+fn write_images(
     folder: &Path,
     scene: &Scene,
     study: &TradeoffStudy,
     size: (u32, u32),
 ) -> Result<(), String> {
-    let write = |name: &str, picture: &Image| {
-        PendingFile::create(&folder.join(name))?.finish(&ImageFormat::Png.encode(picture)?)
+    let write = |name: &str, image: &Image| {
+        PendingFile::create(&folder.join(name))?.finish(&ImageFormat::Png.encode(image)?)
     };
     let truth = &study.reference.image;
     let own = study.report_row();
     for row in study.rows.iter().filter(|row| row.in_front || row.setting == own.setting) {
-        let picture = render(&*row.setting.work(scene, size).map_err(|e| e.to_string())?, size)?;
+        let image = render(&*row.setting.work(scene, size).map_err(|e| e.to_string())?, size)?;
         let name = row.setting.to_string().replace(", ", "-").replace(' ', "-");
-        write(&format!("{name}.png"), &picture)?;
-        write(&format!("{name}-difference.png"), &flip::difference_image(truth, &picture))?;
+        write(&format!("{name}.png"), &image)?;
+        write(&format!("{name}-difference.png"), &flip::difference_image(truth, &image))?;
     }
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! The program, run as its users run it.
+//! Runs the program as a user does.
 #![allow(dead_code, reason = "each test binary uses a part of it")]
 
 use serde_json::Value;
@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use tempfile::TempDir;
 
-/// A run of the program in a folder of its own, with the repository's scenes in reach.
+/// The result of a run of the program.
 pub struct Run {
     pub status: i32,
     pub stdout: String,
@@ -37,7 +37,7 @@ impl Run {
         self.stdout
     }
 
-    /// Status 2, nothing but an error on standard error; returns that.
+    /// Checks for status 2 and an error message alone. Returns the message.
     pub fn expect_refusal(self) -> String {
         assert_eq!((self.status, self.stdout.as_str()), (2, ""), "{}", self.stderr);
         assert!(self.stderr.starts_with("error: "), "{}", self.stderr);
