@@ -167,7 +167,7 @@ fn advice(row: &ExplainedStrategy) -> String {
              A larger image helps, or threads that stay alive between renderings."
         }
     };
-    format!("Most is lost to {} ({:.0} %). {help}", name(cause), 100.0 * share)
+    format!("Largest loss: {} ({:.0} %). {help}", name(cause), 100.0 * share)
 }
 
 /// Returns the meaning of the rows.
@@ -175,11 +175,13 @@ fn legend(explanation: &Explanation) -> Vec<String> {
     let Explanation { reference, cost, .. } = explanation;
     vec![
         format!(
-            "useful work: time of {reference}. redundant work: more time in pieces on one thread."
+            "useful work: time of {reference}. redundant work: pieces on one thread take this much \
+             longer."
         ),
-        "slowdown: more time in pieces on all threads. dispatch: time between pieces on one thread."
+        "slowdown: pieces take this much longer on all threads. dispatch: time between pieces on \
+         one thread."
             .to_owned(),
-        "contention: more time between pieces on all threads. imbalance: waiting for the last \
+        "contention: that time is this much longer on all threads. imbalance: waiting for the last \
          piece."
             .to_owned(),
         "serial part: before a thread's first piece and after the last piece of all.".to_owned(),

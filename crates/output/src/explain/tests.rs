@@ -110,7 +110,7 @@ fn text_puts_a_figure_to_each_cause_and_adds_them_up() {
     has("queue 0 0.00 0.01 0.00 0.00 2 16 18 0 0.00");
     has("queue 1 0.00 0.00 0.00 0.01 2 16 18 1 0.00");
     assert!(text.contains("computes 1.52 times the mean.\nlong gaps: over 1.5 us "), "{text}");
-    assert!(text.contains("\nMost is lost to imbalance (8 %). "), "{text}");
+    assert!(text.contains("\nLargest loss: imbalance (8 %). "), "{text}");
     has("1 more thread got no piece");
     has(&crate::noise::text(&noise()));
     has("Recording takes 30 ns in each piece and 51 ns between pieces. The causes exclude it;");
@@ -135,7 +135,7 @@ fn what_chance_outweighs_is_no_verdict() {
             noise,
         }
         .text();
-        assert_eq!(text.contains("\nMost is lost to imbalance (8 %). "), verdict, "{text}");
+        assert_eq!(text.contains("\nLargest loss: imbalance (8 %). "), verdict, "{text}");
         assert_eq!(text.contains("\nNo verdict: "), !verdict, "{text}");
     }
 }
