@@ -56,7 +56,8 @@ impl TradeoffView<'_> {
 
     /// Returns the settings that no other one beats in both time and error, the fastest first.
     fn front(&self) -> Vec<&TradeoffRow> {
-        let mut front: Vec<&TradeoffRow> = self.study.rows.iter().filter(|row| row.in_front).collect();
+        let mut front: Vec<&TradeoffRow> =
+            self.study.rows.iter().filter(|row| row.in_front).collect();
         front.sort_by(|a, b| a.median_ns.total_cmp(&b.median_ns));
         front
     }
