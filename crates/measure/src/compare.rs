@@ -176,7 +176,9 @@ impl Protocol {
         let contenders = entries.iter().filter(|entry| entry.strategy.name() != reference.name());
         let entries: Vec<Entry<'_>> = [base, base].into_iter().chain(contenders.copied()).collect();
         // The reference is the first row, its control the second.
-        let new_row = |(place, entry)| Measurement::new(entry, place == 1);
+        let new_row = |(place, entry): (usize, &Entry<'_>)| {
+            Measurement::new(entry.strategy, entry.threads, place == 1)
+        };
 
         let rendering = uninterrupted(&mut **first, |executor| executor.render(&base));
         let digest =

@@ -1,11 +1,11 @@
 //! The measurement of one strategy with one number of threads. Tables, files and pages are views of
 //! a list of measurements.
 
-use crate::compare::Entry;
 use crate::digest_text;
 use crate::statistics::{Interval, efficiency, karp_flatt, median, ratio_interval};
-use rayweave_contract::{Digest, Policy, Threads};
+use rayweave_contract::{Digest, Policy, Strategy, Threads};
 use serde::{Deserialize, Serialize};
+use std::num::NonZeroUsize;
 
 /// One rendering in a process: its times and the digests of its images. A child process answers
 /// with this.
@@ -116,14 +116,14 @@ pub struct Measurement {
 }
 
 impl Measurement {
-    /// Returns a measurement of `entry` without a sample yet.
+    /// Returns a measurement of `strategy` without a sample yet, for which `threads` were asked.
     #[must_use]
-    pub fn new(entry: &Entry<'_>, control: bool) -> Self {
-        let starts_threads: Threads = entry.strategy.threads();
-        let Policy { granularity, scheduling, output } = entry.strategy.policy();
+    pub fn new(strategy: &dyn Strategy, threads: NonZeroUsize, control: bool) -> Self {
+        let starts_threads: Threads = strategy.threads();
+        let Policy { granularity, scheduling, output } = strategy.policy();
         Self {
-            strategy: entry.strategy.name().to_owned(),
-            threads: starts_threads.computing_threads(entry.threads).get(),
+            strategy: strategy.name().to_owned(),
+            threads: starts_threads.computing_threads(threads).get(),
             control,
             granularity: granularity.to_string(),
             scheduling: scheduling.to_string(),

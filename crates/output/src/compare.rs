@@ -229,3 +229,9 @@ fn short(digest: &str) -> String {
 fn scene_file(scene: &str) -> &str {
     scene.rsplit(['/', '\\']).next().unwrap_or_default()
 }
+
+/// Returns the scene's file without its folder and ending.
+fn scene_name(record: &Record) -> &str {
+    let file = scene_file(&record.subject.scene);
+    file.strip_suffix(".toml").unwrap_or(file)
+}

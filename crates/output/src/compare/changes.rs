@@ -1,7 +1,6 @@
 //! The changes from an earlier list of measurements to this one.
 
-use super::table::scene_name;
-use super::{Record, Results, Subject, control, scene_file};
+use super::{Record, Results, Subject, control, scene_file, scene_name};
 use crate::{json, style};
 use rayweave_measure::statistics::{median_ratio_interval, ratios};
 use rayweave_measure::{Interval, Measurement};

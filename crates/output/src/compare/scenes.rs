@@ -1,8 +1,7 @@
 //! The list as one table with a column for each scene, and a sentence for each scene on which
 //! strategy wins and why.
 
-use super::table::scene_name;
-use super::{Record, Results, changes, markdown};
+use super::{Record, Results, changes, markdown, scene_name};
 use crate::{machine, style};
 use rayweave_contract::{Granularity, Scheduling};
 

@@ -1,6 +1,6 @@
 //! The list as a table for people, one for each subject.
 
-use super::{Record, Results, Subject, changes, control, scene_file, short};
+use super::{Record, Results, Subject, changes, control, short};
 use crate::{machine, noise, style};
 use rayweave_measure::{Interval, Measurement};
 
@@ -225,12 +225,6 @@ fn goal_line(group: &[Record], goal: f64) -> String {
 
 fn reference(group: &[Record]) -> &str {
     group.first().map_or("the reference", |record| &record.measurement.strategy)
-}
-
-/// Returns the scene's file without its folder and ending.
-pub(super) fn scene_name(record: &Record) -> &str {
-    let file = scene_file(&record.subject.scene);
-    file.strip_suffix(".toml").unwrap_or(file)
 }
 
 #[cfg(test)]
