@@ -2,7 +2,7 @@
 
 mod program;
 
-use program::{files_in, folder, json, rayweave, repository, scene};
+use program::{files_in, folder, rayweave, rayweave_json, repository, scene};
 use serde_json::Value;
 use std::fs;
 
@@ -10,10 +10,8 @@ use std::fs;
 #[test]
 fn tradeoff_writes_every_setting() {
     let folder = folder();
-    let arguments =
-        "tradeoff --size 6x4 --target-psnr 30 --json a.json --csv a.csv --svg a.svg --pictures p";
-    let table = rayweave(folder.path(), arguments).expect_success();
-    let object = json(&folder.path().join("a.json"));
+    let arguments = "tradeoff --size 6x4 --target-psnr 30 --csv a.csv --svg a.svg --pictures p";
+    let (table, object) = rayweave_json(folder.path(), arguments);
     assert_eq!((&object["schema"], &object["width"]), (&Value::from(1), &Value::from(6)));
     let results = object["results"].as_array().expect("a list");
     // Four arithmetics, seven densities of the lattice and six of the other sampling, bounces 4, 1,
@@ -52,9 +50,7 @@ fn tradeoff_tries_what_the_scene_has() {
                  [[sphere]]\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"a\"\n";
     fs::write(folder.path().join("ball.toml"), plain).expect("written");
     // `error` is the command's old name, which still works.
-    let table =
-        rayweave(folder.path(), "error ball.toml --size 5x5 --json a.json").expect_success();
-    let object = json(&folder.path().join("a.json"));
+    let (table, object) = rayweave_json(folder.path(), "error ball.toml --size 5x5");
     assert_eq!(object["results"].as_array().map(Vec::len), Some(4 * (13 + 5)));
     let parts: Vec<&Value> =
         object["costs"].as_array().expect("a list").iter().map(|c| &c["part"]).collect();

@@ -2,8 +2,7 @@
 
 mod program;
 
-use program::{Run, files_in, folder, json, rayweave, repository, scene};
-use serde_json::Value;
+use program::{Run, expect_refusals, files_in, folder, rayweave, rayweave_json, repository, scene};
 use std::fs;
 use std::process::Command;
 
@@ -106,11 +105,8 @@ fn old_names_still_work() {
 #[test]
 fn check_holds_and_says_so() {
     let folder = folder();
-    let text =
-        rayweave(folder.path(), "check --size 31x17 --threads 1,3 --tile 5 --json check.json")
-            .expect_success();
+    let (text, json) = rayweave_json(folder.path(), "check --size 31x17 --threads 1,3 --tile 5");
     assert!(text.contains("all identical"), "{text}");
-    let json: Value = json(&folder.path().join("check.json"));
     assert_eq!(json["holds"], true);
     assert!(json["findings"].as_array().expect("a list").is_empty());
     assert!(json["compared"].as_u64().expect("a number") > 0);
@@ -206,10 +202,7 @@ fn requests_that_cannot_be_met_are_refused_before_any_work() {
         ("render folder.png", "folder.png"),
         ("compar", "compar"),
     ];
-    for (arguments, expected) in cases {
-        let message = rayweave(folder.path(), arguments).expect_refusal();
-        assert!(message.contains(expected), "{arguments}: {message}");
-    }
+    expect_refusals(folder.path(), "", &cases);
     assert_eq!(files_in(folder.path()), ["folder.png"]);
 }
 

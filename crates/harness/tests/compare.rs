@@ -2,7 +2,7 @@
 
 mod program;
 
-use program::{folder, json, rayweave, repository};
+use program::{expect_refusals, folder, json, rayweave, rayweave_json, repository};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -27,10 +27,8 @@ fn a_sample_renders_as_the_comparison_says() {
                    --accel none";
     let rendered = rayweave(folder.path(), &format!("render {options} -o a.ppm")).expect_success();
     let digest = rendered.split("digest ").nth(1).expect("a digest")[..16].to_owned();
-    let compare =
-        format!("compare {options} --strategy tile-queue --threads 2 --time-limit 1 --json a.json");
-    rayweave(folder.path(), &compare).expect_success();
-    let object = json(&folder.path().join("a.json"));
+    let compare = format!("compare {options} --strategy tile-queue --threads 2 --time-limit 1");
+    let (_, object) = rayweave_json(folder.path(), &compare);
     let expected = &object["results"][0]["reference_digest"];
     assert!(
         expected.as_str().is_some_and(|whole| whole.starts_with(&digest)),
@@ -77,14 +75,9 @@ fn rounds_follow_the_goal_and_the_limit() {
     let folder = folder();
     let run = |options: &str| {
         let small = "compare --size 4x4 --antialiasing 0 --strategy sequential";
-        let text =
-            rayweave(folder.path(), &format!("{small} {options} --json a.json")).expect_success();
-        let object = json(&folder.path().join("a.json"));
-        (
-            text,
-            object["results"][0]["rounds"].as_u64().expect("a number"),
-            object["precision_goal"].clone(),
-        )
+        let (text, object) = rayweave_json(folder.path(), &format!("{small} {options}"));
+        let rounds = object["results"][0]["rounds"].as_u64().expect("a number");
+        (text, rounds, object["precision_goal"].clone())
     };
     let (text, rounds, goal) = run("--precision-goal 100% --time-limit 600");
     assert!(
@@ -102,10 +95,10 @@ fn rounds_follow_the_goal_and_the_limit() {
 #[test]
 fn noise_is_reported() {
     let folder = folder();
-    let arguments = "compare --size 4x4 --strategy sequential --time-limit 1 --json a.json";
-    let text = rayweave(folder.path(), arguments).expect_success();
+    let arguments = "compare --size 4x4 --strategy sequential --time-limit 1";
+    let (text, object) = rayweave_json(folder.path(), arguments);
     assert!(text.contains("\nnoise: "), "{text}");
-    let noise = &json(&folder.path().join("a.json"))["noise"];
+    let noise = &object["noise"];
     assert!(noise["wall_s"].as_f64() > Some(0.0) && noise["disturbed"].is_boolean(), "{noise}");
     if cfg!(target_os = "linux") {
         assert!(
@@ -118,10 +111,9 @@ fn noise_is_reported() {
 #[test]
 fn compare_writes_what_other_programs_read() {
     let folder = folder();
-    let arguments = "compare --size 24x16 --antialiasing 1 --threads 1,2 --time-limit 1 \
-                     --json a.json --csv a.csv";
-    let table = rayweave(folder.path(), arguments).expect_success();
-    let object = json(&folder.path().join("a.json"));
+    let arguments =
+        "compare --size 24x16 --antialiasing 1 --threads 1,2 --time-limit 1 --csv a.csv";
+    let (table, object) = rayweave_json(folder.path(), arguments);
     assert_eq!(object["schema"], 2);
     let results = object["results"].as_array().expect("a list");
     let first = &results[0];
@@ -180,11 +172,10 @@ fn rays(results: &[Value], strategy: &str) -> (u64, u64) {
 fn compare_counts_the_rays_of_the_tiles_that_each_strategy_cuts() {
     let folder = folder();
     let run = |options: &str| {
-        let arguments = format!(
-            "compare --size 24x16 --threads 2 --tile 10 {options} --time-limit 1 --json a.json"
-        );
-        let table = rayweave(folder.path(), &arguments).expect_success();
-        (table, results(&json(&folder.path().join("a.json"))))
+        let arguments =
+            format!("compare --size 24x16 --threads 2 --tile 10 {options} --time-limit 1");
+        let (table, object) = rayweave_json(folder.path(), &arguments);
+        (table, results(&object))
     };
 
     let (table, object) = run("--antialiasing 2");
@@ -218,10 +209,9 @@ fn compare_counts_the_rays_of_the_tiles_that_each_strategy_cuts() {
 fn compare_does_not_count_adaptive_samples() {
     let folder = folder();
     let arguments = "compare --size 8x8 --antialiasing 2 --adaptive on --strategy sequential \
-                     --time-limit 1 --json a.json";
-    let table = rayweave(folder.path(), arguments).expect_success();
+                     --time-limit 1";
+    let (table, object) = rayweave_json(folder.path(), arguments);
     assert!(table.contains("antialiasing 2 (adaptive)") && !table.contains("/px"), "{table}");
-    let object = json(&folder.path().join("a.json"));
     let first = &object["results"][0];
     assert_eq!((&first["adaptive"], first.get("primary_rays")), (&true.into(), Some(&Value::Null)));
 }
@@ -230,12 +220,8 @@ fn compare_does_not_count_adaptive_samples() {
 fn compare_says_how_the_image_is_computed() {
     let folder = folder();
     let run = |options: &str| {
-        let arguments = format!(
-            "compare --size 8x8 --threads 1 --strategy sequential --time-limit 1 {options} \
-             --json a.json"
-        );
-        let table = rayweave(folder.path(), &arguments).expect_success();
-        let object = json(&folder.path().join("a.json"));
+        let small = "compare --size 8x8 --threads 1 --strategy sequential --time-limit 1";
+        let (table, object) = rayweave_json(folder.path(), &format!("{small} {options}"));
         let line =
             table.lines().find(|line| line.starts_with("computed: ")).expect("the line").to_owned();
         let first = &object["results"][0];
@@ -258,8 +244,8 @@ fn compare_says_how_the_image_is_computed() {
 fn compare_measures_both_ways_to_share_samples() {
     let folder = folder();
     let arguments = "compare --size 24x16 --antialiasing 2 --threads 2 --share-samples both \
-                     --time-limit 1 --json a.json --csv a.csv";
-    let text = rayweave(folder.path(), arguments).expect_success();
+                     --time-limit 1 --csv a.csv";
+    let (text, object) = rayweave_json(folder.path(), arguments);
     let place = |part: &str| text.find(part).unwrap_or_else(|| panic!("{part}: {text}"));
     let (shared, unshared) = (place("samples shared"), place("samples not shared"));
     assert!(
@@ -268,7 +254,6 @@ fn compare_measures_both_ways_to_share_samples() {
     );
     assert_eq!(text.matches("(control)").count(), 2, "{text}");
 
-    let object = json(&folder.path().join("a.json"));
     let all = results(&object);
     let (with, without) = all.split_at(all.len() / 2);
     assert_eq!(with.len(), 2 + rayweave_registry::available().len() - 1);
@@ -315,7 +300,7 @@ fn a_baseline_says_what_has_changed() {
     let markdown = fs::read_to_string(folder.path().join("old.md")).expect("the file");
     assert!(markdown.contains("\n| tile-queue | 1 | "), "{markdown}");
 
-    for (arguments, expected) in [
+    let cases = [
         ("--baseline missing.json", "missing.json: cannot be a baseline: "),
         ("--baseline old.md", "old.md: cannot be a baseline: not the JSON of a comparison"),
         ("--baseline old.json --json old.json", "old.json: is named twice"),
@@ -327,16 +312,14 @@ fn a_baseline_says_what_has_changed() {
             "--baseline old.json --tile 2 --json new.json",
             "old.json: cannot be a baseline: tile is 32 there and 2 here: use the same scene and",
         ),
-    ] {
-        let message = rayweave(folder.path(), &format!("{small} {arguments}")).expect_refusal();
-        assert!(message.contains(expected), "{arguments}: {message}");
-    }
+    ];
+    expect_refusals(folder.path(), small, &cases);
 }
 
 #[test]
 fn scenes_stand_beside_each_other() {
     let folder = folder();
-    let small = "compare --size 8x8 --strategy tile-queue --threads 2 --time-limit 1 --json a.json";
+    let small = "compare --size 8x8 --strategy tile-queue --threads 2 --time-limit 1";
     let text = rayweave(
         &repository(),
         "compare --size 8x8 --strategy tile-queue --time-limit 1 --scenes all",
@@ -349,24 +332,22 @@ fn scenes_stand_beside_each_other() {
         );
     }
     let two = format!("{},{}", program::scene("report.toml"), program::scene("loads/free.toml"));
-    rayweave(folder.path(), &format!("{small} --scenes {two}")).expect_success();
-    let results = results(&json(&folder.path().join("a.json")));
+    let (_, object) = rayweave_json(folder.path(), &format!("{small} --scenes {two}"));
+    let results = results(&object);
     let scene = |number: usize| results[number]["scene"].as_str().expect("a path");
     // Each has the reference, its control and the queue.
     assert!(results.len() == 6 && scene(0).ends_with("report.toml"));
     assert!(scene(3).ends_with("free.toml") && results[5]["largest_tile"] == 1.0);
 
-    for (arguments, expected) in [
+    let cases = [
         ("--scenes all", "go to the repository's folder"),
         ("--scenes missing.toml", "missing.toml: cannot be read"),
         ("a.toml --scenes b.toml", "--scenes must name all scenes"),
         ("--scenes a.toml --share-samples both", "on or off"),
-        ("--scenes a.json", "no input or result is overwritten"),
+        ("--scenes a.json --json a.json", "no input or result is overwritten"),
         ("--scenes a.toml,./a.toml", "./a.toml is named twice: name it once"),
-    ] {
-        let message = rayweave(folder.path(), &format!("{small} {arguments}")).expect_refusal();
-        assert!(message.contains(expected), "{arguments}: {message}");
-    }
+    ];
+    expect_refusals(folder.path(), small, &cases);
 }
 
 /// Interrupts a comparison of a minute when it has started `samples` processes. All processes of

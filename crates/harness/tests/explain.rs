@@ -2,7 +2,7 @@
 
 mod program;
 
-use program::{files_in, folder, json, rayweave};
+use program::{expect_refusals, files_in, folder, json, rayweave, rayweave_json};
 use std::fs;
 
 const CAUSES: [&str; 6] =
@@ -15,12 +15,11 @@ fn explain_writes_what_it_measured_of_every_strategy() {
     let names: Vec<&str> =
         rayweave_registry::available().iter().map(|strategy| strategy.name()).collect();
     let arguments = format!(
-        "explain --size 40x30 --threads 2 --tile 8 --time-limit 2 --strategy {} --json a.json \
+        "explain --size 40x30 --threads 2 --tile 8 --time-limit 2 --strategy {} \
          --trace a.trace.json --pictures drawn",
         names.join(",")
     );
-    let text = rayweave(folder.path(), &arguments).expect_success();
-    let object = json(&folder.path().join("a.json"));
+    let (text, object) = rayweave_json(folder.path(), &arguments);
     let results = object["results"].as_array().expect("a list");
     assert_eq!(
         results.iter().map(|result| result["strategy"].as_str()).collect::<Vec<_>>().len(),
@@ -73,7 +72,7 @@ fn without_a_strategy_the_recommended_one_is_explained() {
 fn requests_that_cannot_be_met_are_refused_before_any_work() {
     let folder = folder();
     fs::write(folder.path().join("file"), "").expect("written");
-    for (arguments, expected) in [
+    let cases = [
         ("explain --size 4097x2048", "use a smaller --size"),
         ("explain --strategy nope", "sequential"),
         ("explain --threads 1,2", "1..=1024"),
@@ -81,9 +80,7 @@ fn requests_that_cannot_be_met_are_refused_before_any_work() {
         ("explain --trace missing/a.json", "no folder missing"),
         ("explain --pictures file", "file: cannot be made"),
         ("explain --share-samples both", "only `compare`"),
-    ] {
-        let message = rayweave(folder.path(), arguments).expect_refusal();
-        assert!(message.contains(expected), "{arguments}: {message}");
-    }
+    ];
+    expect_refusals(folder.path(), "", &cases);
     assert_eq!(files_in(folder.path()), ["file"]);
 }

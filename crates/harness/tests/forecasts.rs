@@ -2,7 +2,7 @@
 
 mod program;
 
-use program::{files_in, folder, json, rayweave, scene};
+use program::{expect_refusals, files_in, folder, rayweave_json, scene};
 use rayweave_contract::Threads;
 use serde_json::Value;
 use std::fs;
@@ -19,16 +19,13 @@ fn is_positive(value: &Value) -> bool {
 fn overhead_has_a_row_a_strategy() {
     let folder = folder();
     let strategies = ["sequential", rayweave_registry::recommended().name()];
-    let arguments = format!(
-        "overhead --strategy {} --threads 2 --time-limit 1 --json a.json",
-        strategies.join(",")
-    );
-    let table = rayweave(folder.path(), &arguments).expect_success();
+    let arguments =
+        format!("overhead --strategy {} --threads 2 --time-limit 1", strategies.join(","));
+    let (table, object) = rayweave_json(folder.path(), &arguments);
     for word in strategies.iter().chain(&["METG(50 %)", "break-even", "ns a piece", "machine: "]) {
         assert!(table.contains(word), "{word}: {table}");
     }
 
-    let object = json(&folder.path().join("a.json"));
     assert_eq!(object["schema"], 1);
     assert!(object["rounds"].as_u64().expect("a number") >= 6);
     assert!(is_positive(&object["step_ns"]) && object["machine"]["compiler"].is_string());
@@ -53,16 +50,15 @@ fn predict_goes_beyond_the_threads_that_are_here() {
     let name = rayweave_registry::recommended().name();
     let arguments = format!(
         "predict {} --size 40x30 --tile 4 --time-limit 2 --antialiasing 0 --threads 1..8,100 \
-         --strategy {name} --json a.json --svg a.svg",
+         --strategy {name} --svg a.svg",
         scene("room.toml")
     );
-    let text = rayweave(folder.path(), &arguments).expect_success();
+    let (text, object) = rayweave_json(folder.path(), &arguments);
     for word in [name, "Amdahl", "USL", "within 5 %", "assumed: ", "\nnoise: ", "arithmetic: "] {
         assert!(text.contains(word), "{word}: {text}");
     }
     assert!(fs::read_to_string(folder.path().join("a.svg")).expect("the plot").contains(name));
 
-    let object = json(&folder.path().join("a.json"));
     assert_eq!(
         (&object["schema"], &object["width"], &object["tile"]),
         (&1.into(), &40.into(), &4.into())
@@ -97,12 +93,8 @@ fn predict_goes_beyond_the_threads_that_are_here() {
 #[test]
 fn predict_takes_every_strategy_that_starts_threads() {
     let folder = folder();
-    rayweave(
-        folder.path(),
-        "predict --size 12x9 --time-limit 2 --antialiasing 1 --threads 1,3 --json a.json",
-    )
-    .expect_success();
-    let object = json(&folder.path().join("a.json"));
+    let arguments = "predict --size 12x9 --time-limit 2 --antialiasing 1 --threads 1,3";
+    let (_, object) = rayweave_json(folder.path(), arguments);
     let parallel = rayweave_registry::STRATEGIES.iter().filter(|s| s.threads() != Threads::None);
     let unavailable = object["unavailable"].as_array().expect("a list").len();
     assert_eq!(results(&object).len(), 2 * (parallel.count() - unavailable));
@@ -131,9 +123,6 @@ fn requests_that_cannot_be_met_are_refused() {
         ("overhead --strategy nope", "sequential"),
         ("overhead --json missing/a.json", "no folder missing"),
     ];
-    for (arguments, expected) in cases {
-        let message = rayweave(folder.path(), arguments).expect_refusal();
-        assert!(message.contains(expected), "{arguments}: {message}");
-    }
+    expect_refusals(folder.path(), "", &cases);
     assert_eq!(files_in(folder.path()), ["folder"]);
 }

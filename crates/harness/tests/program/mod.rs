@@ -23,6 +23,20 @@ pub fn rayweave(folder: &Path, arguments: &str) -> Run {
     Run::of(output)
 }
 
+/// Runs a successful command with `--json a.json`. Returns its output and the JSON.
+pub fn rayweave_json(folder: &Path, arguments: &str) -> (String, Value) {
+    let text = rayweave(folder, &format!("{arguments} --json a.json")).expect_success();
+    (text, json(&folder.join("a.json")))
+}
+
+/// Runs commands that start with `command` and must be refused, each with its part of the message.
+pub fn expect_refusals(folder: &Path, command: &str, cases: &[(&str, &str)]) {
+    for (arguments, expected) in cases {
+        let message = rayweave(folder, &format!("{command} {arguments}")).expect_refusal();
+        assert!(message.contains(expected), "{arguments}: {message}");
+    }
+}
+
 impl Run {
     pub fn of(output: Output) -> Self {
         Self {

@@ -70,19 +70,23 @@ fn explanation() -> Explanation {
     }
 }
 
-fn with_view<T>(check: impl FnOnce(&ExplanationView<'_>) -> T) -> T {
-    let (machine, noise) = (Machine::here(), noise());
-    let explanation = explanation();
+fn with_view<T>(read: impl FnOnce(&ExplanationView<'_>) -> T) -> T {
     let rays = |rect: Rect| Some(u64::from(rect.width * rect.height) + 1);
-    check(&ExplanationView {
-        scene: "room",
-        size: (8, 4),
-        tile: 4,
-        explanation: &explanation,
-        rays: &rays,
-        machine: &machine,
-        noise: &noise,
-    })
+    with_view_of(&explanation(), &rays, read)
+}
+
+/// Returns the text of an explanation whose rays are not counted.
+fn text_of(explanation: &Explanation) -> String {
+    with_view_of(explanation, &|_| None, |view| view.text())
+}
+
+fn with_view_of<T>(
+    explanation: &Explanation,
+    rays: &RayCost<'_>,
+    read: impl FnOnce(&ExplanationView<'_>) -> T,
+) -> T {
+    let (size, machine, noise) = ((8, 4), &Machine::here(), &noise());
+    read(&ExplanationView { scene: "room", size, tile: 4, explanation, rays, machine, noise })
 }
 
 #[test]
@@ -119,22 +123,11 @@ fn text_puts_a_figure_to_each_cause_and_adds_them_up() {
 /// Catches a cause that is named by chance: the unexplained time, of either sign, exceeds it.
 #[test]
 fn what_chance_outweighs_is_no_verdict() {
-    let (machine, noise) = (Machine::here(), noise());
     for (lost_ms, verdict) in [(28.7, true), (28.9, false), (8.9, true), (8.7, false)] {
         let mut explanation = explanation();
         // The causes take 18.8 ms, and the largest of them takes 10.
         explanation.rows[0].lost_ns = lost_ms * MS;
-        let (size, tile, machine, noise) = ((8, 4), 4, &machine, &noise);
-        let text = ExplanationView {
-            scene: "room",
-            size,
-            tile,
-            explanation: &explanation,
-            rays: &|_| None,
-            machine,
-            noise,
-        }
-        .text();
+        let text = text_of(&explanation);
         assert_eq!(text.contains("\nLargest loss: imbalance (8 %). "), verdict, "{text}");
         assert_eq!(text.contains("\nNo verdict: "), !verdict, "{text}");
     }
@@ -143,18 +136,13 @@ fn what_chance_outweighs_is_no_verdict() {
 /// Catches times that round to zero, and strategies shown in different units.
 #[test]
 fn short_renderings_are_told_in_microseconds() {
-    let (machine, noise) = (Machine::here(), noise());
     let mut explanation = explanation();
-    let told = |explanation: &Explanation| {
-        let rays = |_| None;
-        let (size, tile, machine, noise) = ((8, 4), 4, &machine, &noise);
-        ExplanationView { scene: "room", size, tile, explanation, rays: &rays, machine, noise }
-            .text()
-    };
     explanation.rows[1].wall_ns = 10.0 * MS;
-    assert!(told(&explanation).contains("by-pixel on 3 threads: 10.00 ms, sequential 100.00 ms: "));
+    assert!(
+        text_of(&explanation).contains("by-pixel on 3 threads: 10.00 ms, sequential 100.00 ms: ")
+    );
     explanation.rows[1].wall_ns = 0.0623 * MS;
-    let text = told(&explanation);
+    let text = text_of(&explanation);
     assert!(text.contains("by-pixel on 3 threads: 62.3 us, sequential 100000.0 us: "), "{text}");
     assert!(text.contains("explained: 18800.0 of 20000.0 us lost (94 %)"), "{text}");
     let words: Vec<&str> = text.split_whitespace().collect();
@@ -166,7 +154,6 @@ fn short_renderings_are_told_in_microseconds() {
 /// Catches a percentage of almost nothing, and advice where there is nothing to gain.
 #[test]
 fn little_lost_is_said_to_be_little() {
-    let (machine, noise) = (Machine::here(), noise());
     let mut explanation = explanation();
     let mut row = row("queue", 1, breakdown(1, [100.2, 1.0, 0.0, 1.0]), Vec::new());
     (row.wall_ns, row.lost_ns) = (100.5 * MS, 0.5 * MS);
@@ -176,16 +163,7 @@ fn little_lost_is_said_to_be_little() {
         &breakdown(1, [100.2, 1.0, 0.0, 1.0]),
     );
     explanation.rows = vec![row];
-    let view = ExplanationView {
-        scene: "room",
-        size: (8, 4),
-        tile: 4,
-        explanation: &explanation,
-        rays: &|_| None,
-        machine: &machine,
-        noise: &noise,
-    };
-    let text = view.text();
+    let text = text_of(&explanation);
     assert!(text.starts_with("queue on 1 thread: "), "{text}");
     assert!(
         text.contains("explained: 0.20 of 0.50 ms lost (less than 1 % of the thread-time)\n"),
