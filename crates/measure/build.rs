@@ -6,10 +6,10 @@ use std::env;
 use std::path::Path;
 use std::process::Command;
 
-/// What the whole program is built from, relative to this package.
+/// The sources of the whole program, relative to this package.
 const SOURCES: [&str; 3] = ["../../crates", "../../Cargo.toml", "../../Cargo.lock"];
 
-/// What git changes when a commit is made or another one is checked out.
+/// The files that git changes when a commit is made or another one is checked out.
 const GIT_FILES: [&str; 4] = ["HEAD", "logs/HEAD", "index", "packed-refs"];
 
 fn main() {

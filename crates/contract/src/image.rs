@@ -44,12 +44,13 @@ pub struct Image {
 pub enum ImageError {
     /// It has more than [`MAX_PIXELS`] pixels.
     #[error(
-        "an image of {width} x {height} pixels is over the limit of {MAX_PIXELS} pixels: choose a smaller size"
+        "an image of {width} x {height} pixels is over the limit of {MAX_PIXELS} pixels: \
+         choose a smaller size"
     )]
     TooLarge {
-        /// In pixels.
+        /// The width in pixels.
         width: u32,
-        /// In pixels.
+        /// The height in pixels.
         height: u32,
     },
     /// Its width or height is 0.
@@ -57,17 +58,17 @@ pub enum ImageError {
         "an image of {width} x {height} has no pixels: choose a width and a height of 1 or more"
     )]
     Empty {
-        /// In pixels.
+        /// The width in pixels.
         width: u32,
-        /// In pixels.
+        /// The height in pixels.
         height: u32,
     },
     /// The allocator refused the memory.
     #[error("no memory for an image of {width} x {height} pixels: choose a smaller size")]
     NoMemory {
-        /// In pixels.
+        /// The width in pixels.
         width: u32,
-        /// In pixels.
+        /// The height in pixels.
         height: u32,
     },
 }
@@ -132,7 +133,8 @@ impl Image {
         ((index % width) as u32, (index / width) as u32)
     }
 
-    /// Returns each channel in 8 bits: `floor(255 clamp(c, 0, 1) + 0.5)`, without gamma; 0 for a NaN.
+    /// Returns each channel in 8 bits: `floor(255 clamp(c, 0, 1) + 0.5)`, without gamma. A NaN
+    /// gives 0.
     #[must_use]
     pub fn to_rgb8(&self) -> Vec<u8> {
         let byte =
@@ -145,8 +147,8 @@ impl Image {
         self.pixels.fill(color);
     }
 
-    /// Cuts the image into squares of `size` pixels a side, from the top, each row of tiles from the
-    /// left. The last tiles of a row or a column are smaller where the image ends.
+    /// Cuts the image into squares of `size` pixels a side, from the top, each row of tiles from
+    /// the left. The last tiles of a row or a column are smaller where the image ends.
     #[must_use]
     pub fn tiles(&mut self, size: NonZeroU32) -> Vec<Tile<'_>> {
         let (width, size) = (self.width as usize, size.get().min(self.width.max(self.height)));
@@ -167,8 +169,8 @@ impl Image {
         tiles
     }
 
-    /// Returns the SHA-256 over width, height (as 32-bit integers) and the bits of every channel, all
-    /// little-endian.
+    /// Returns the SHA-256 over width, height (as 32-bit integers) and the bits of every channel,
+    /// all little-endian.
     #[must_use]
     pub fn digest(&self) -> Digest {
         let mut hash = Sha256::new();

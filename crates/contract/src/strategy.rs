@@ -148,7 +148,7 @@ pub enum StrategyError {
     Unavailable {
         /// The strategy's name.
         strategy: &'static str,
-        /// What is missing, and how to get it.
+        /// The missing thing, and how to get it.
         reason: &'static str,
     },
     /// A thread could not be started; those that were started have ended.

@@ -4,10 +4,9 @@ use crate::tile::Tile;
 
 /// A pure function from a pixel's position to its colour, evaluated a tile at a time.
 ///
-/// Every strategy and every proof rests on this: a pixel gets the same bits whichever tile it is
-/// computed in, on whichever thread, in whichever order, and however often. So a strategy is free in
-/// all of these, and an observer (a recorder, a progress bar, fault injection) is a `Work` around a
-/// `Work`.
+/// Every strategy and every proof relies on this: a pixel gets the same bits in any tile, on any
+/// thread, in any order, and however often it is computed. So a strategy is free in all of these,
+/// and an observer (a recorder, a progress bar, fault injection) is a `Work` around a `Work`.
 ///
 /// ```
 /// use rayweave_contract::{Tile, Work};

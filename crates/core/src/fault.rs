@@ -7,7 +7,7 @@ use thiserror::Error;
 /// A value in a scene that breaks a rule: its key, what was expected, what was found.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error("`{key}` must be {expected}, but is {found}")]
-pub struct Fault {
+pub struct SceneFault {
     /// The key of the value, as a scene file spells it: `radius`.
     pub key: &'static str,
     /// The values that are allowed: `a number above 0`.
@@ -16,21 +16,21 @@ pub struct Fault {
     pub found: String,
 }
 
-/// A [`Fault`] and the entry it belongs to.
+/// A [`SceneFault`] and the entry it belongs to.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error("{entry}: {fault}")]
 pub struct SceneError {
     /// The entry, counted from 0 within its list: `sphere[2]`.
     pub entry: String,
     /// The rule that it breaks.
-    pub fault: Fault,
+    pub fault: SceneFault,
 }
 
 /// Checks each entry of the list called `kind`.
 pub(crate) fn check_all<T>(
     kind: &str,
     entries: &[T],
-    check: impl Fn(&T) -> Result<(), Fault>,
+    check: impl Fn(&T) -> Result<(), SceneFault>,
 ) -> Result<(), SceneError> {
     entries
         .iter()
@@ -41,7 +41,7 @@ pub(crate) fn check_all<T>(
 /// Adds the entry to a fault.
 pub(crate) fn locate(
     entry: impl Into<String>,
-    result: Result<(), Fault>,
+    result: Result<(), SceneFault>,
 ) -> Result<(), SceneError> {
     result.map_err(|fault| SceneError { entry: entry.into(), fault })
 }
@@ -52,27 +52,27 @@ pub(crate) fn expect(
     holds: bool,
     expected: &'static str,
     found: impl fmt::Display,
-) -> Result<(), Fault> {
-    if holds { Ok(()) } else { Err(Fault { key, expected, found: found.to_string() }) }
+) -> Result<(), SceneFault> {
+    if holds { Ok(()) } else { Err(SceneFault { key, expected, found: found.to_string() }) }
 }
 
 /// Checks that `v` has no infinity and no NaN.
-pub(crate) fn finite(key: &'static str, v: DVec3) -> Result<(), Fault> {
+pub(crate) fn finite(key: &'static str, v: DVec3) -> Result<(), SceneFault> {
     expect(key, v.is_finite(), "finite numbers", v)
 }
 
 /// Checks that `x` is finite and above 0.
-pub(crate) fn positive(key: &'static str, x: f64) -> Result<(), Fault> {
+pub(crate) fn positive(key: &'static str, x: f64) -> Result<(), SceneFault> {
     expect(key, x.is_finite() && x > 0.0, "a finite number above 0", x)
 }
 
 /// Checks that `x` is finite and 0 or more.
-pub(crate) fn not_negative(key: &'static str, x: f64) -> Result<(), Fault> {
+pub(crate) fn not_negative(key: &'static str, x: f64) -> Result<(), SceneFault> {
     expect(key, x.is_finite() && x >= 0.0, "a finite number of 0 or more", x)
 }
 
 /// Checks that each channel of `c` is in 0..=1.
-pub(crate) fn color(key: &'static str, c: DVec3) -> Result<(), Fault> {
+pub(crate) fn color(key: &'static str, c: DVec3) -> Result<(), SceneFault> {
     let shares = c.to_array().iter().all(|share| (0.0..=1.0).contains(share));
     expect(key, shares, "three numbers in 0..=1", c)
 }

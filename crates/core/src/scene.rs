@@ -3,9 +3,9 @@
 //! Every number is an `f64` in scene units and every colour is linear RGB in 0..=1; the tracer
 //! rounds them once to the precision it works in. The fields are public, and [`Scene::check`] tells
 //! whether they are valid. The rules are written here and nowhere else: a reader of scene files
-//! adds to a [`Fault`] the position in the file.
+//! adds to a [`SceneFault`] the position in the file.
 
-pub use crate::fault::{Fault, SceneError};
+pub use crate::fault::{SceneError, SceneFault};
 pub use crate::settings::{MAX_ANTIALIASING, MAX_REFLECTIONS, RenderSettings, Sampling};
 
 use crate::fault::{check_all, color, expect, finite, locate, not_negative, positive};
@@ -169,7 +169,7 @@ impl Camera {
     /// # Errors
     ///
     /// The first key that breaks a rule.
-    pub fn check(&self) -> Result<(), Fault> {
+    pub fn check(&self) -> Result<(), SceneFault> {
         finite("position", self.position)?;
         finite("look_at", self.look_at)?;
         finite("up", self.up)?;
@@ -189,7 +189,7 @@ impl Light {
     /// # Errors
     ///
     /// The first key that breaks a rule.
-    pub fn check(&self) -> Result<(), Fault> {
+    pub fn check(&self) -> Result<(), SceneFault> {
         finite("position", self.position)?;
         color("color", self.color)?;
         not_negative("power", self.power)
@@ -202,7 +202,7 @@ impl Material {
     /// # Errors
     ///
     /// The first key that breaks a rule.
-    pub fn check(&self) -> Result<(), Fault> {
+    pub fn check(&self) -> Result<(), SceneFault> {
         color("color", self.color)?;
         not_negative("ambient", self.ambient)?;
         not_negative("diffuse", self.diffuse)?;
@@ -225,7 +225,7 @@ impl Plane {
     /// # Errors
     ///
     /// The first key that breaks a rule.
-    pub fn check(&self) -> Result<(), Fault> {
+    pub fn check(&self) -> Result<(), SceneFault> {
         finite("point", self.point)?;
         finite("normal", self.normal)?;
         expect("normal", self.normal != DVec3::ZERO, "a vector other than zero", self.normal)
@@ -238,7 +238,7 @@ impl Sphere {
     /// # Errors
     ///
     /// The first key that breaks a rule.
-    pub fn check(&self) -> Result<(), Fault> {
+    pub fn check(&self) -> Result<(), SceneFault> {
         finite("center", self.center)?;
         positive("radius", self.radius)
     }
@@ -257,7 +257,7 @@ impl Triangle {
     /// # Errors
     ///
     /// The first key that breaks a rule.
-    pub fn check(&self) -> Result<(), Fault> {
+    pub fn check(&self) -> Result<(), SceneFault> {
         let [a, b, c] = self.vertices;
         for vertex in [a, b, c] {
             finite("vertices", vertex)?;
@@ -273,7 +273,7 @@ impl Cylinder {
     /// # Errors
     ///
     /// The first key that breaks a rule.
-    pub fn check(&self) -> Result<(), Fault> {
+    pub fn check(&self) -> Result<(), SceneFault> {
         finite("bottom", self.bottom)?;
         finite("top", self.top)?;
         positive("radius", self.radius)?;

@@ -2,7 +2,7 @@
 //!
 //! The settings that do not are in [`Execution`](crate::Execution).
 
-use crate::fault::{Fault, color, expect};
+use crate::fault::{SceneFault, color, expect};
 use glam::DVec3;
 use std::fmt;
 
@@ -117,7 +117,7 @@ impl RenderSettings {
     /// # Errors
     ///
     /// The first key that breaks a rule.
-    pub fn check(&self) -> Result<(), Fault> {
+    pub fn check(&self) -> Result<(), SceneFault> {
         color("background", self.background)?;
         let reflections = self.max_reflections;
         expect(

@@ -1,9 +1,21 @@
-//! The `rayweave` program: proves that all strategies render the same image, and measures the cost
-//! of each.
+//! Compares ways to spread uneven work over threads: proves that all strategies compute the same
+//! image, bit for bit, and measures the cost of each.
 //!
-//! It joins the other crates and is the only one that prints: results to standard output, errors
+//! This program is the front of a workspace. Work and strategy know nothing of each other; they
+//! meet in the contract:
+//!
+//! * [`rayweave_contract`]: image, tile, work, strategy and policy. Begin here.
+//! * [`rayweave_core`]: the ray tracer, a work. [`rayweave_scene_file`] reads its scenes.
+//! * [`rayweave_registry`]: every strategy in one list; each is a crate of its own with one short
+//!   file, for example [`rayweave_tile_queue`](../rayweave_tile_queue/index.html).
+//! * [`rayweave_measure`]: check, comparison, explanation, overheads and forecasts.
+//!   [`rayweave_predict`](../rayweave_predict/index.html) simulates policies for them.
+//! * [`rayweave_accuracy`]: speed against error, and hard cases with exact answers.
+//! * [`rayweave_output`]: results as tables, JSON, CSV, Markdown and SVG.
+//!
+//! Here is one file a subcommand, and only this crate prints: results to standard output, errors
 //! and progress to standard error. Exit status: 0 done and every check passed; 1 a check failed; 2
-//! the request or its input was wrong, or the machine cannot do it; 130 interrupted.
+//! the request or its input was wrong, or the machine cannot meet it; 130 interrupted.
 
 mod commands;
 mod files;

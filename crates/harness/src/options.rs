@@ -53,7 +53,7 @@ pub struct SceneOptions {
     /// the image
     #[arg(long, value_enum, default_value_t)]
     pub adaptive: SwitchOption,
-    /// Whether rays skip primitives that they cannot hit; the picture is the same
+    /// Let rays skip primitives that they cannot hit; the image is the same
     #[arg(long, alias = "search", value_enum, default_value_t)]
     pub accel: AccelerationOption,
 }
@@ -129,10 +129,10 @@ pub enum SwitchOption {
     Off,
 }
 
-/// How a ray finds the primitives that it tries.
+/// The way a ray finds the primitives that it tries.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize, ValueEnum)]
 pub enum AccelerationOption {
-    /// What suits the scene: a BVH among many primitives, cones and spheres among few
+    /// The one that suits the scene: a BVH among many primitives, cones and spheres among few
     #[default]
     Auto,
     /// Nothing: every ray tries every primitive

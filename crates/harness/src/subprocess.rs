@@ -37,7 +37,7 @@ pub struct Job {
     pub strategy: String,
     /// The number of computing threads.
     pub threads: NonZeroUsize,
-    /// Whether to render once and count the rays, instead of twice with all times.
+    /// True to render once and count the rays, instead of twice with all times.
     pub count_rays: bool,
 }
 

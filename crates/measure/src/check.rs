@@ -8,7 +8,7 @@
 
 use crate::catch_panic::catch_panic;
 use crate::computing_threads::Rendezvous;
-use crate::finding::{CheckedRender, Fault, Finding, ImageDifference};
+use crate::finding::{CheckedRender, Fault, Finding, PixelDifference};
 use crate::recorder::{Recorder, TileRecord};
 use crate::sentinel;
 use rayweave_contract::{Image, ImageError, Plan, Renderer, Rgb, Strategy, Threads, Work};
@@ -322,7 +322,7 @@ fn difference(expected: &Image, found: &Image, record: &TileRecord) -> Option<Fa
         pairs.enumerate().filter(|(_, (expected, found))| !same_bits(**expected, **found));
     let (index, (&expected, &color)) = differing.next()?;
     let (x, y) = found.position(index);
-    Some(Fault::Different(ImageDifference {
+    Some(Fault::Different(PixelDifference {
         pixels: 1 + differing.count(),
         x,
         y,

@@ -95,7 +95,7 @@ pub struct Comparison {
     pub digest: Digest,
     /// The number of rounds measured.
     pub rounds: usize,
-    /// Whether the run was [interrupted](Executor::is_interrupted) before the protocol's end.
+    /// True if the run was [interrupted](Executor::is_interrupted) before the protocol's end.
     pub interrupted: bool,
 }
 

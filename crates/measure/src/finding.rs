@@ -41,7 +41,7 @@ pub struct CheckedRender {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Fault {
     /// The image is not the reference's.
-    Different(ImageDifference),
+    Different(PixelDifference),
     /// Pixels were written, but not computed exactly once.
     NotOnce {
         /// The number of such pixels.
@@ -66,7 +66,7 @@ pub enum Fault {
 
 /// The pixels in which an image differs from the reference.
 #[derive(Clone, Debug)]
-pub struct ImageDifference {
+pub struct PixelDifference {
     /// The number of differing pixels.
     pub pixels: usize,
     /// The column of the first.
@@ -82,7 +82,7 @@ pub struct ImageDifference {
 }
 
 /// Compares the bits of colours, so that a NaN equals itself.
-impl PartialEq for ImageDifference {
+impl PartialEq for PixelDifference {
     fn eq(&self, other: &Self) -> bool {
         let bits = |color: Rgb| color.map(f32::to_bits);
         (self.pixels, self.x, self.y) == (other.pixels, other.x, other.y)
@@ -148,7 +148,7 @@ impl fmt::Display for Fault {
     }
 }
 
-impl fmt::Display for ImageDifference {
+impl fmt::Display for PixelDifference {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { pixels, x, y, expected, found, computation } = self;
         write!(
@@ -203,7 +203,7 @@ mod tests {
             tile: 8,
             repetition: 2,
         };
-        let difference = ImageDifference {
+        let difference = PixelDifference {
             pixels: 32,
             x: 9,
             y: 17,
@@ -224,7 +224,7 @@ mod tests {
              computed in tile 8x4 at (8, 16) by thread 1 (\"tile-queue 0\")"
         );
         finding.fault =
-            Fault::Different(ImageDifference { found: None, computation: None, ..difference });
+            Fault::Different(PixelDifference { found: None, computation: None, ..difference });
         assert!(finding.to_string().ends_with("found never written, never computed"));
     }
 

@@ -59,7 +59,7 @@ pub struct Measurement {
     pub strategy: String,
     /// The number of computing threads.
     pub threads: usize,
-    /// Whether it is the reference measured a second time.
+    /// True if it is the reference measured a second time.
     #[serde(default)]
     pub control: bool,
     /// The [granularity](rayweave_contract::Granularity) of the strategy's pieces, in a word.
@@ -74,7 +74,7 @@ pub struct Measurement {
     /// The place where the strategy [starts its threads](rayweave_contract::Threads), in a word.
     #[serde(default)]
     pub starts_threads: String,
-    /// Whether there is an image, and every image was the reference's.
+    /// True if there is an image, and every image was the reference's.
     pub identical: bool,
     /// The digest of the first image that was not the reference's, or else of all images; `None`
     /// without any.

@@ -37,7 +37,7 @@ pub struct Noise {
     pub lowest_mhz: Option<f64>,
     /// The highest clock rate of a core at the beginning and at the end, in MHz.
     pub highest_mhz: Option<f64>,
-    /// Whether the times are unreliable: others had more than 2 % of the machine, or the limit was
+    /// True if the times are unreliable: others had more than 2 % of the machine, or the limit was
     /// reached.
     pub disturbed: bool,
 }

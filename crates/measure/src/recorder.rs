@@ -124,7 +124,7 @@ pub struct RayCounter<'a> {
     work: &'a dyn Work,
     cost: &'a RayCost<'a>,
     sum: AtomicU64,
-    /// Whether the rays of a tile were unknown.
+    /// True if the rays of a tile were unknown.
     unknown: AtomicBool,
 }
 

@@ -77,7 +77,7 @@ pub struct Slot {
     pub entry: usize,
     /// The number of rounds before this one; `None` during the warm-up, which is not counted.
     pub round: Option<usize>,
-    /// Whether a round begins with this slot.
+    /// True if a round begins with this slot.
     pub starts_round: bool,
     /// The share of the measurement that is done: 0 to 1.
     pub fraction: f64,
@@ -91,7 +91,7 @@ pub struct Rounds {
     order: Vec<usize>,
     /// The place of the next slot in the order.
     place: usize,
-    /// As [`Slot::round`].
+    /// The same as [`Slot::round`].
     round: Option<usize>,
     /// The begin of the running round; `None` before the first.
     begin: Option<Duration>,

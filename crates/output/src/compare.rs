@@ -27,8 +27,8 @@ use serde::{Deserialize, Serialize};
 /// The schema number of the JSON. It changes when a key is removed or changes its meaning.
 const SCHEMA: u32 = 2;
 
-/// What was rendered and how: times of the same subject can be compared. All but the last four
-/// change the image.
+/// A scene with its settings. Times of equal subjects can be compared. All but the last four
+/// settings change the image.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Subject {
     /// The scene file's path as it was given, or another name.
@@ -41,7 +41,7 @@ pub struct Subject {
     pub antialiasing: u32,
     /// Positions of the samples: "lattice" or "importance".
     pub sampling: String,
-    /// Whether samples of a lattice are traced only where pixels differ.
+    /// True if samples of a lattice are traced only where pixels differ.
     pub adaptive: bool,
     /// The tracer's formulas: "robust" or "textbook".
     pub formulas: String,
@@ -49,7 +49,7 @@ pub struct Subject {
     pub precision: String,
     /// The number of rays that are followed side by side.
     pub lanes: usize,
-    /// Whether samples that neighbouring pixels of a tile have in common are traced once.
+    /// True if samples that neighbouring pixels of a tile have in common are traced once.
     pub share_samples: bool,
     /// The acceleration structure: "auto" or "none".
     pub accel: String,
@@ -60,14 +60,14 @@ pub struct Subject {
 /// One measurement with everything that was measured around it: one entry of `results`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Record {
-    /// What was rendered and how.
+    /// The scene and its settings.
     #[serde(flatten)]
     pub subject: Subject,
     /// The number of rounds that were measured.
     pub rounds: usize,
-    /// Whether the measurement was interrupted after these.
+    /// True if the measurement was interrupted after these.
     pub interrupted: bool,
-    /// Whether [other programs](Noise::disturbed) make the times doubtful.
+    /// True if [other programs](Noise::disturbed) make the times doubtful.
     pub disturbed: bool,
     /// The digest of the reference's image, in hexadecimal.
     pub reference_digest: String,

@@ -1,4 +1,4 @@
-//! What every SVG drawing of this crate shares.
+//! The parts that every SVG drawing of this crate shares.
 
 use plotters::prelude::DrawingAreaErrorKind;
 

@@ -10,7 +10,7 @@ pub(crate) struct Chunk {
     /// The pieces, which no other thread gets.
     pub(crate) pieces: Range<usize>,
     pub(crate) source: Source,
-    /// Whether the thread leaves pieces in its queue that others can steal.
+    /// True if the thread leaves pieces in its queue that others can steal.
     pub(crate) leaves_rest: bool,
 }
 

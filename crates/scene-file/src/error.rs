@@ -1,4 +1,4 @@
-//! What is wrong with a scene file, and where.
+//! The errors of a scene file: what is wrong, and where.
 
 use std::fmt;
 
@@ -9,7 +9,7 @@ use crate::wording;
 /// A result whose error is ready to be shown.
 pub(crate) type Result<T, E = SceneFileError> = std::result::Result<T, E>;
 
-/// What is wrong with a scene file. Shown as one line:
+/// An error of a scene file. Shown as one line:
 /// `room.toml:41:10: sphere[2].radius: expected a finite number above 0, found -1`.
 ///
 /// No part of it has a control character or a line break, whatever was in the file.
@@ -24,7 +24,7 @@ pub struct SceneFileError {
     /// The key at fault with its entry, which counts from 0 within its kind: `sphere[2].radius`.
     /// `None` when the text is not TOML, so that there are no keys.
     pub key: Option<String>,
-    /// What was expected and what was found.
+    /// The expectation and what was found.
     pub message: String,
 }
 

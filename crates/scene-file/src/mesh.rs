@@ -3,7 +3,7 @@
 use std::path::{Component, Path, PathBuf};
 
 use glam::DVec3;
-use rayweave_core::scene::{Fault, Triangle};
+use rayweave_core::scene::{SceneFault, Triangle};
 
 use crate::error::{Result, Source};
 use crate::node::Mention;
@@ -36,13 +36,13 @@ impl Mesh {
     ///
     /// The rule is about the words of the path. A link in the folder is followed wherever it leads,
     /// because whoever put it there could have put the file there.
-    pub(crate) fn check(&self) -> Result<(), Fault> {
+    pub(crate) fn check(&self) -> Result<(), SceneFault> {
         let down = |part| matches!(part, Component::Normal(_) | Component::CurDir);
         if !self.path.as_os_str().is_empty() && self.path.components().all(down) {
             return Ok(());
         }
         let expected = "a path in the folder of the scene file, without `..`";
-        Err(Fault { key: "path", expected, found: self.path.display().to_string() })
+        Err(SceneFault { key: "path", expected, found: self.path.display().to_string() })
     }
 
     /// Appends the mesh to `triangles`. Its file is in the `folder` of `scene`.

@@ -4,7 +4,7 @@
 use std::fmt;
 
 use glam::DVec3;
-use rayweave_core::scene::Fault;
+use rayweave_core::scene::SceneFault;
 use toml::Spanned;
 use toml::de::{DeInteger, DeString, DeTable, DeValue};
 
@@ -131,7 +131,7 @@ impl<'a> Node<'a> {
     pub(crate) fn checked<T>(
         &self,
         entry: T,
-        check: impl Fn(&T) -> Result<(), Fault>,
+        check: impl Fn(&T) -> Result<(), SceneFault>,
     ) -> Result<T> {
         check(&entry).map(|()| entry).map_err(|fault| {
             // A default is not written in the file. Its error is at the table.

@@ -1,7 +1,7 @@
 //! The result of reading a scene file.
 
 use rayweave_core::Scene;
-use rayweave_core::scene::Fault;
+use rayweave_core::scene::SceneFault;
 
 /// Everything that a scene file says.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,11 +38,11 @@ impl ImageSize {
     /// # Errors
     ///
     /// The side that is not.
-    pub fn check(&self) -> Result<(), Fault> {
+    pub fn check(&self) -> Result<(), SceneFault> {
         for (key, side) in [("width", self.width), ("height", self.height)] {
             if !(1..=MAX_SIDE).contains(&side) {
                 let expected = "an integer in 1..=65535";
-                return Err(Fault { key, expected, found: side.to_string() });
+                return Err(SceneFault { key, expected, found: side.to_string() });
             }
         }
         Ok(())

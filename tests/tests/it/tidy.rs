@@ -119,6 +119,31 @@ fn lints_that_allow_c() -> String {
         + "\n"
 }
 
+/// Catches two public types of one name, which a reader of the workspace cannot tell apart.
+#[test]
+fn public_type_names_are_unique() {
+    let mut places = std::collections::BTreeMap::<String, Vec<String>>::new();
+    for (name, text) in files("crates", ".rs") {
+        // A program has no public types.
+        if !name.contains("/src/") || name.starts_with("crates/harness/") {
+            continue;
+        }
+        // Test modules end their files.
+        let code = text.split("#[cfg(test)]\nmod ").next().unwrap_or("");
+        for line in code.lines() {
+            let mut words = line.trim().split(|c: char| !c.is_alphanumeric() && c != '_');
+            if words.next() == Some("pub")
+                && words.next().is_some_and(|w| ["struct", "enum", "trait", "type"].contains(&w))
+                && let Some(item) = words.next()
+            {
+                places.entry(item.to_owned()).or_default().push(name.clone());
+            }
+        }
+    }
+    places.retain(|_, places| places.len() > 1);
+    assert!(places.is_empty(), "public types of one name: {places:#?}");
+}
+
 /// Catches unsafe code outside of the one module of a crate that calls C.
 #[test]
 fn unsafe_code_is_only_where_c_is_called() {
@@ -142,6 +167,35 @@ fn a_strategy_is_short_and_explains_itself() {
     }
 }
 
+/// Words that open a fragment, not a sentence about the item.
+const HEADLESS: [&str; 13] = [
+    "What", "Whether", "How", "Of", "Those", "That", "As", "In", "Where", "Which", "Who", "Whose",
+    "Why",
+];
+
+/// Catches a doc comment that does not open with what the item is or does: "What is left",
+/// "Whether it fits", "Of each tile", "In pixels". "How to ..." and "In place" are good openings.
+#[test]
+fn doc_comments_open_with_what_the_item_is_or_does() {
+    let mut headless = Vec::new();
+    let sources = ["crates", "tests", "benches", "fuzz"].map(|folder| files(folder, ".rs"));
+    for (name, text) in sources.into_iter().flatten() {
+        let mut previous = "";
+        for (number, line) in (1..).zip(text.lines()) {
+            let marker = line.trim_start().get(..3).filter(|m| ["///", "//!"].contains(m));
+            let opening = marker.is_some_and(|marker| marker != previous);
+            previous = marker.unwrap_or("");
+            let mut words = line.split_whitespace().skip(1);
+            let (Some(first), second) = (words.next(), words.next()) else { continue };
+            let good = [("How", "to"), ("In", "place")].contains(&(first, second.unwrap_or("")));
+            if opening && HEADLESS.contains(&first) && !good {
+                headless.push(format!("{name}:{number}: {}", line.trim()));
+            }
+        }
+    }
+    assert!(headless.is_empty(), "doc comments without a subject:\n{}", headless.join("\n"));
+}
+
 /// Catches a file that has outgrown its purpose and should be split by subject.
 #[test]
 fn no_file_outgrows_its_purpose() {
@@ -150,4 +204,32 @@ fn no_file_outgrows_its_purpose() {
         let lines = text.lines().count();
         assert!(lines <= 450, "{name}: {lines} lines");
     }
+}
+
+/// Catches a line that does not fit in 100 columns, in code, comments, prose, manifests or scripts.
+/// Tables and code blocks of Markdown are as wide as they have to be, and so is malformed input.
+#[test]
+fn no_line_is_wider_than_100_columns() {
+    let mut wide = Vec::new();
+    for (name, text) in files("", "") {
+        let script = text.lines().next().is_some_and(|l| l.starts_with("#!") && l.ends_with("sh"));
+        let markdown = name.ends_with(".md");
+        if name.contains("/malformed/") {
+            continue;
+        }
+        if !(markdown || script || [".rs", ".toml", ".sh"].iter().any(|end| name.ends_with(end))) {
+            continue;
+        }
+        let mut is_block = false;
+        for (number, line) in (1..).zip(text.lines()) {
+            let fence = markdown && line.trim_start().starts_with("```");
+            is_block ^= fence;
+            let table =
+                markdown && (line.trim_start().starts_with('|') || line.starts_with("    "));
+            if !(is_block || fence || table) && line.chars().count() > 100 {
+                wide.push(format!("{name}:{number}"));
+            }
+        }
+    }
+    assert!(wide.is_empty(), "wider than 100 columns:\n{}", wide.join("\n"));
 }

@@ -58,8 +58,8 @@ fn contain_one(intervals: &[Interval]) -> usize {
 const ROUNDS: Protocol =
     Protocol { min_rounds: 20, max_rounds: 20, budget: Duration::MAX, goal: None, seed: 0 };
 
-/// In 19 of 20 runs, with intervals of 2 % or less. Catches rows measured one after the other,
-/// where drift looks like a difference, and intervals that are too narrow or too wide.
+/// Holds in 19 of 20 runs, with intervals of 2 % or less. Catches rows measured one after the
+/// other, where drift looks like a difference, and intervals that are too narrow or too wide.
 #[test]
 fn the_control_has_one_in_its_interval() {
     let controls: Vec<Interval> =
@@ -71,7 +71,7 @@ fn the_control_has_one_in_its_interval() {
     assert!(width < 0.02, "{width}");
 }
 
-/// In 9 of 10 runs.
+/// Holds in 9 of 10 runs.
 #[test]
 fn a_difference_of_three_percent_is_found() {
     let speedup = |run: &Comparison| run.rows[2].speedup.expect("figures");

@@ -12,7 +12,7 @@ use serde_json::Value;
 pub struct Change {
     /// The scene's path as the later list has it.
     pub scene: String,
-    /// Whether samples were shared.
+    /// True if samples were shared.
     pub share_samples: bool,
     /// The strategy's name.
     pub strategy: String,

@@ -24,41 +24,9 @@ fn both() -> Results {
     Results::new(machine(), noise(), [records(), unshared].concat())
 }
 
-const TABLE: &str = r#"room, 500 x 400 pixels, antialiasing 2, f32, tiles of 32; 2 interleaved rounds, digest RIGHT
+const TABLE: &str = include_str!("table.txt");
 
-strategy              threads  median  cold           speed-up  efficiency    serial           rays  threads        identical
-                                   ms    ms    [95 % interval]              fraction                 start
-──────────────────────────────────────────────────────────────────────────────────────────────────────────────────────────────
-sequential                  1    2000  2500  1.00 [0.96, 1.06]       100 %         -  4.4/px +9.5 %  -              yes
-sequential (control)        1    2010  2512  1.00 [0.96, 1.06]       100 %         -  4.4/px +9.5 %  -              yes
-pool                        2    1026  1282  1.95 [1.91, 2.01]        97 %     0.026  4.4/px +9.5 %  before: 85 us  yes
-queue                       2       -     -                  -           -         -  4.4/px +9.5 %  in the time    NO
-many, "too" many         9000       -     -                  -           -         -              -  in the time    failed
-
-queue, 2 threads: wrong image (digest WRONG) after 2 correct ones
-many, "too" many, 9000 threads: failed after 0 samples: cannot start 9000 threads
-computed: 8 rays side by side, samples shared, acceleration auto
-control: sequential over itself is 0.995 [0.955, 1.055], which contains 1, but reaches 6 % from it.
-Do not trust differences between rows below 6 %: measure longer (--time-limit,
---precision-goal) or on a quieter machine.
-"#;
-
-const UNSHARED: &str = r#"
-room, 500 x 400 pixels, antialiasing 2, f32, tiles of 32; 2 interleaved rounds, digest RIGHT
-
-strategy              threads  median  cold           speed-up  efficiency    serial            rays  threads  identical
-                                   ms    ms    [95 % interval]              fraction                  start
-─────────────────────────────────────────────────────────────────────────────────────────────────────────────────────────
-sequential                  1    2000  2500  1.00 [0.96, 1.06]       100 %         -  25.0/px +0.0 %  -        yes
-sequential (control)        1    2010  2512  1.00 [0.96, 1.06]       100 %         -  25.0/px +0.0 %  -        yes
-pool                        2       -     -                  -           -         -  25.0/px +0.0 %  -        failed
-
-pool, 2 threads: failed after 2 samples: gone
-computed: 8 rays side by side, samples not shared, acceleration auto
-control: sequential over itself is 0.995 [0.955, 1.055], which contains 1, but reaches 6 % from it.
-Do not trust differences between rows below 6 %: measure longer (--time-limit,
---precision-goal) or on a quieter machine.
-"#;
+const UNSHARED: &str = include_str!("unshared_table.txt");
 
 const LEGEND: &str = r#"
 median: time of the second rendering in each process, without threads started "before".
