@@ -39,9 +39,11 @@ fn overhead_has_a_row_a_strategy() {
         }
         assert!(row["error"].is_null());
     }
-    // The reference never breaks even with itself, and dispatch costs more than a step of 2 ns.
+    // The reference never breaks even with itself. On a busy machine even the shortest piece may
+    // reach half of the best efficiency: then there is no shortest one.
     assert!(reference["break_even_side"].is_null());
-    assert!(is_positive(&recommended["metg_ns"]), "{recommended}");
+    let metg = recommended.get("metg_ns").expect("a key");
+    assert!(metg.is_null() || is_positive(metg), "{recommended}");
 }
 
 #[test]
