@@ -203,6 +203,6 @@ fn without_openmp(workspace: &Path) {
     let check = rayweave(&["check", "--size", "4x3", "--threads", "2", "--tile", "2"]);
     assert!(check.contains("all identical"), "{check}");
     let left_out =
-        "left out, since unavailable here: openmp-static, openmp-dynamic, openmp-guided ";
+        "left out because unavailable here: openmp-static, openmp-dynamic, openmp-guided ";
     assert!(check.contains(left_out), "{check}");
 }
