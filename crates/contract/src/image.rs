@@ -1,4 +1,4 @@
-//! The image, its digest, and the cutting of it into tiles.
+//! The image, its digest, and its division into tiles.
 
 use crate::tile::{Rgb, Tile};
 use sha2::{Digest as _, Sha256};

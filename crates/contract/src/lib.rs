@@ -1,4 +1,4 @@
-//! The contract by which work and strategy know nothing of each other.
+//! The contract that separates work from strategies.
 //!
 //! * [`Work`] is a pure function that fills any [`Tile`] of an [`Image`]; the tracer is one.
 //! * A [`Strategy`] decides which thread computes which tile, and states its [`Policy`]. Prepared

@@ -39,7 +39,7 @@ pub enum Granularity {
     Row,
     /// A tile of [`Plan::tile`](crate::Plan::tile) pixels a side.
     Tile,
-    /// All rows of one thread.
+    /// The consecutive rows that one thread computes at once.
     Band,
 }
 
@@ -87,7 +87,7 @@ pub enum Output {
     Channel,
 }
 
-/// The place where a strategy starts its threads: it says which figure contains that cost.
+/// The place where a strategy starts its threads. The time of that place includes the cost.
 ///
 /// ```
 /// use rayweave_contract::Threads;

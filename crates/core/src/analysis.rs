@@ -97,14 +97,16 @@ impl fmt::Display for Analysis {
             writeln!(f, "left out: {} of them, behind all that rays reach", self.behind)?;
         }
         match self.search {
-            HitSearch::BruteForce => writeln!(f, "search: every ray tries every primitive")?,
+            HitSearch::BruteForce => {
+                writeln!(f, "acceleration: none, every ray tries every primitive")?;
+            }
             HitSearch::Cones => writeln!(
                 f,
-                "search: rays from the eye, also by a plane's mirror, and to a light try what is \
-                 in their direction; others each primitive, triangles if they come near any"
+                "acceleration: direction cones for rays from the eye, mirrored by planes or to a \
+                 light; bounding spheres of triangles for the others"
             )?,
             HitSearch::Bvh { leaves } => {
-                writeln!(f, "search: a tree of boxes with {leaves} leaves")?;
+                writeln!(f, "acceleration: a BVH with {leaves} leaves")?;
             }
         }
         match self.bounces {

@@ -16,11 +16,11 @@ pub struct Execution {
     /// Traces a lattice point once for all pixels of a tile that need it. Adaptive samples are
     /// always shared.
     pub share_samples: bool,
-    /// The way in which a ray finds the primitives that it tries.
+    /// The acceleration structure.
     pub acceleration: Acceleration,
 }
 
-/// The way in which a ray finds the primitives that it tries.
+/// The acceleration structure that lets rays skip primitives.
 ///
 /// The textbook's formulas always try each of them: their errors have no bound, so what they would
 /// find depends on what they try.

@@ -190,7 +190,7 @@ impl fmt::Display for PrecisionEstimate {
         } else {
             write!(
                 f,
-                "f32 is off by up to {displacement:.1e} of the picture's width \
+                "f32 is off by up to {displacement:.1e} of the image's width \
                  (allowed: {allowed:.1e})"
             )
         }

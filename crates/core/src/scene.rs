@@ -300,7 +300,7 @@ pub(crate) fn unit(v: DVec3) -> DVec3 {
 pub(crate) fn parallel(a: DVec3, b: DVec3) -> bool {
     // Scaled to about 1 first, so that no product overflows or vanishes.
     let (a, b) = (a / a.abs().max_element(), b / b.abs().max_element());
-    let rect = a.cross(b).length();
+    let area = a.cross(b).length();
     // NaN, from a zero vector, counts as parallel.
-    rect.is_nan() || rect <= 8.0 * f64::EPSILON * a.length() * b.length()
+    area.is_nan() || area <= 8.0 * f64::EPSILON * a.length() * b.length()
 }

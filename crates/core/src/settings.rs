@@ -22,9 +22,9 @@ pub struct RenderSettings {
     pub antialiasing: u32,
     /// The pattern of the samples in and around a pixel.
     pub sampling: Sampling,
-    /// Traces lattice points between pixel centres only where those centres differ: in what they
-    /// hit, in the lights it sees, or in the same of what it mirrors. Interpolates the others. Has
-    /// no effect on samples that are not on the lattice.
+    /// Interpolates lattice points between pixel centres that hit the same primitive under the same
+    /// lights, directly and in mirrors; traces the others. Has no effect on samples that are not on
+    /// the lattice.
     pub adaptive: bool,
     /// Formulas and number type.
     pub arithmetic: Arithmetic,

@@ -70,12 +70,12 @@ impl<S: Scalar, F: Family> World<S, F> {
             primitives.bound_triangles(scene);
         }
         let cones_from = |point: DVec3| use_cones.then(|| ConeSet::new(scene, point));
-        // Without error bounds a ray may slip through a plane, so that no plane confines it.
-        let confined = eye.filter(|_| F::ERROR_BOUNDED);
+        // Without error bounds a ray may slip through a plane, so planes hide nothing from it.
+        let culling_eye = eye.filter(|_| F::ERROR_BOUNDED);
         let mirrors = scene.materials.iter().any(|material| material.reflection > 0.0);
         let shining = scene.lights.iter().filter(|light| light.color * light.power != DVec3::ZERO);
         let lights = shining.filter_map(|light| {
-            let planes = hiding_planes(scene, light.position, confined, S::ROUNDOFF)?;
+            let planes = hiding_planes(scene, light.position, culling_eye, S::ROUNDOFF)?;
             Some(Light::new(light, Occluders { planes, cones: cones_from(light.position) }))
         });
         let mirrored_eye = |plane: &Plane| {

@@ -93,13 +93,13 @@ impl Executor for SubprocessExecutor {
         self.begin.elapsed()
     }
 
-    /// A terminal interrupts the rendering process too, so there is nothing to wait for.
+    /// Ctrl-C in a terminal also ends the child process, so the current rendering returns at once.
     fn is_interrupted(&self) -> bool {
         self.interrupt.happened()
     }
 }
 
-/// A process that ends when this is dropped.
+/// A child process that is killed when dropped.
 struct Running(Child);
 
 impl Drop for Running {

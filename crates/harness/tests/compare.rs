@@ -306,11 +306,11 @@ fn a_baseline_says_what_has_changed() {
         ("--baseline old.json --json old.json", "old.json: is named twice"),
         (
             "--baseline old.json --share-samples off --json new.json",
-            "old.json: cannot be a baseline: share_samples is true there and false here: use",
+            "old.json: cannot be a baseline: share_samples was true and is false now: use",
         ),
         (
             "--baseline old.json --tile 2 --json new.json",
-            "old.json: cannot be a baseline: tile is 32 there and 2 here: use the same scene and",
+            "old.json: cannot be a baseline: tile was 32 and is 2 now: use the same scene and",
         ),
     ];
     expect_refusals(folder.path(), small, &cases);
@@ -420,7 +420,7 @@ fn an_early_interruption_reports_that_there_is_no_table() {
     // The first sample would take minutes.
     let (run, object) = interrupted_at(1, "--size 2000x2000 --antialiasing 32");
     assert_eq!((run.status, run.stdout.as_str()), (130, ""), "{}", run.stderr);
-    let expected = "error: interrupted with 0 complete rounds, of fewer than 6 there is no table: \
-                    let it run longer, or take a smaller --size\n";
+    let expected = "error: interrupted after 0 complete rounds; a table needs at least 6: \
+                    let it run longer, or use a smaller --size\n";
     assert_eq!((run.stderr.as_str(), object), (expected, None));
 }

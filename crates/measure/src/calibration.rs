@@ -143,11 +143,7 @@ fn overheads(policy: Policy, threads: usize, times: &Times) -> Overheads {
         next_start: (without_pieces(times.together) - without_pieces(times.alone)).max(0.0)
             / others,
         piece: one,
-        steal: if steals {
-            price_of_theft(policy, threads, times.late - times.spread)
-        } else {
-            0.0
-        },
+        steal: if steals { steal_cost(policy, threads, times.late - times.spread) } else { 0.0 },
         ..Overheads::default()
     };
     let access = |pieces: f64| Access {
@@ -172,15 +168,15 @@ fn without_pieces([single, twice]: [f64; 2]) -> f64 {
     2.0 * single - twice
 }
 
-/// Returns the cost of a theft, given that the late load takes `longer` than the spread one. Two
-/// simulations give the part that is there without a cost of thefts, which is subtracted, and the
-/// delay of the end for each nanosecond of a theft, which divides the rest.
-fn price_of_theft(policy: Policy, threads: usize, longer: f64) -> f64 {
+/// Returns the cost of a steal, given that the late load takes `longer` than the spread one. Two
+/// simulations give the part that is there without a cost of steals, which is subtracted, and the
+/// delay of the end for each nanosecond of a steal, which divides the rest.
+fn steal_cost(policy: Policy, threads: usize, longer: f64) -> f64 {
     let late = |steal| simulated_late(policy, threads, steal);
     (longer - late(0.0)).max(0.0) / (late(1.0) - late(0.0)).max(1.0)
 }
 
-/// Returns the simulated time that the late load takes longer than the spread one if a theft costs
+/// Returns the simulated time that the late load takes longer than the spread one if a steal costs
 /// `steal`.
 fn simulated_late(policy: Policy, threads: usize, steal: f64) -> f64 {
     let (pieces, ns) = STOLEN;
@@ -226,7 +222,7 @@ mod tests {
             scheduling: Scheduling::WorkStealing,
             output: Output::InPlace,
         };
-        let steal = price_of_theft(steals, 3, 3.0);
+        let steal = steal_cost(steals, 3, 3.0);
         assert_eq!(
             of(Scheduling::WorkStealing, Output::InPlace, 6.0),
             Overheads { steal, ..plain }
@@ -242,10 +238,10 @@ mod tests {
         );
     }
 
-    /// Catches a cost of thefts or of another thread's start with one thread, and a cost of
+    /// Catches a cost of steals or of another thread's start with one thread, and a cost of
     /// dispatch with bands.
     #[test]
-    fn bands_have_no_dispatch_and_one_thread_has_no_thefts() {
+    fn bands_have_no_dispatch_and_one_thread_has_no_steals() {
         let policy = |piece| Policy {
             granularity: piece,
             scheduling: Scheduling::RecursiveSplit,
@@ -260,7 +256,7 @@ mod tests {
         );
     }
 
-    /// Catches an uneven split counted as the cost of a theft, and several thefts counted as one.
+    /// Catches an uneven split counted as the cost of a steal, and several steals counted as one.
     #[test]
     fn the_cost_of_a_theft_is_recovered() {
         for (scheduling, threads) in [
@@ -270,7 +266,7 @@ mod tests {
         ] {
             let policy =
                 Policy { granularity: Granularity::Tile, scheduling, output: Output::InPlace };
-            let found = price_of_theft(policy, threads, simulated_late(policy, threads, 100.0));
+            let found = steal_cost(policy, threads, simulated_late(policy, threads, 100.0));
             assert!((found - 100.0).abs() < 1.0, "{scheduling:?}, {threads} threads: {found}");
         }
     }

@@ -107,8 +107,8 @@ pub enum CompareError {
     Reference(String),
     /// There are too few samples for an interval.
     #[error(
-        "interrupted with {0} complete rounds, of fewer than {LEAST_VALUES} there is no table: let \
-         it run longer, or take a smaller --size"
+        "interrupted after {0} complete rounds; a table needs at least {LEAST_VALUES}: let it run \
+         longer, or use a smaller --size"
     )]
     Interrupted(usize),
 }

@@ -34,7 +34,7 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// Returns a sample of which only this is known.
+    /// Returns a sample with these three values and nothing else.
     #[must_use]
     pub fn new(prepare_ns: u64, render_ns: u64, digest: Digest) -> Self {
         Self {

@@ -126,7 +126,7 @@ impl Results {
             not_measured: Vec::new(),
             doubts: Vec::new(),
         };
-        list.sharing_speedup = list.gain();
+        list.sharing_speedup = list.computed_sharing_speedup();
         list
     }
 
@@ -195,15 +195,15 @@ impl Results {
 
     /// Computes the reference's time without shared samples over its time with them, round by
     /// round.
-    fn gain(&self) -> Option<Interval> {
+    fn computed_sharing_speedup(&self) -> Option<Interval> {
         let reference = |shared| {
             let group = self.groups().find(|group| group[0].subject.share_samples == shared)?;
             group[0].measurement.median_ns.map(|_| &group[0])
         };
         let (shared, unshared) = (reference(true)?, reference(false)?);
         let alike = Subject { share_samples: true, ..unshared.subject.clone() };
-        let [unshared, below] = [unshared, shared].map(|record| &record.measurement.samples_ns);
-        (alike == shared.subject).then(|| ratio_interval(unshared, below))?
+        let times = |record: &Record| record.measurement.samples_ns.clone();
+        (alike == shared.subject).then(|| ratio_interval(&times(unshared), &times(shared)))?
     }
 }
 

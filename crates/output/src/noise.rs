@@ -7,7 +7,7 @@ pub(crate) fn text(noise: &Noise) -> String {
     let facts = [
         noise
             .share_of_others
-            .map(|share| format!("other programs used {:.1} % of the machine", share * 100.0)),
+            .map(|share| format!("others used {:.1} % of the machine", share * 100.0)),
         noise
             .stolen_s
             .filter(|&seconds| seconds > 0.0)

@@ -32,7 +32,7 @@ pub(crate) struct MeshTriangles {
 }
 
 impl Mesh {
-    /// Checks that the path leads down.
+    /// Checks that the path stays in the scene file's folder.
     ///
     /// The rule is about the words of the path. A link in the folder is followed wherever it leads,
     /// because whoever put it there could have put the file there.

@@ -217,8 +217,8 @@ fn far_or_large_beside_small_chooses_f64() {
 fn the_reason_is_one_line_about_what_decides() {
     let report = named("report");
     for (scene, word) in [
-        (&report, "of the picture's width"),
-        (&moved(&report, DVec3::splat(1e5)), "of the picture's width"),
+        (&report, "of the image's width"),
+        (&moved(&report, DVec3::splat(1e5)), "of the image's width"),
         (&named("imbalance"), "mirrors"),
         (&enlarged(&report, 1e30), "numbers from"),
     ] {

@@ -118,9 +118,9 @@ fn default_size(scene: &Scene, image: ImageSize) -> Result<(u32, u32), String> {
         timed(rayweave_registry::reference(), &setting, scene, pilot)?.nanoseconds as f64;
     let per_ray = nanoseconds / (f64::from(pilot.0 * pilot.1 * setting.rays_per_pixel()));
     let rays: u32 = Setting::all(scene).iter().map(Setting::rays_per_pixel).sum();
-    let rect = |(width, height): (u32, u32)| f64::from(width) * f64::from(height);
+    let pixel_count = |(width, height): (u32, u32)| f64::from(width) * f64::from(height);
     while pixels > 1.0
-        && rect(shrunk(image, pixels)) * f64::from(rays) * per_ray > ROUND.as_nanos() as f64
+        && pixel_count(shrunk(image, pixels)) * f64::from(rays) * per_ray > ROUND.as_nanos() as f64
     {
         pixels /= 2.0;
     }

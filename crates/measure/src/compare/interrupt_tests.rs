@@ -41,7 +41,7 @@ fn too_few_rounds_give_no_table() {
     for (call, rounds) in [(1, 0), (3, 0), (4, 0), (5, 0), (8, 1), (1 + 3 + 6 * 3, 5)] {
         let error = interrupted_in(call).expect_err("too early").to_string();
         let expected =
-            format!("interrupted with {rounds} complete rounds, of fewer than 6 there is no table");
+            format!("interrupted after {rounds} complete rounds; a table needs at least 6");
         assert!(error.starts_with(&expected), "call {call}: {error}");
     }
     assert_eq!(interrupted_in(1 + 3 + 6 * 3 + 1).expect("enough rounds").rounds, 6);

@@ -62,7 +62,7 @@ fn differences(then: &Subject, now: &Subject) -> Vec<String> {
     };
     let keys = now.as_object().into_iter().flatten();
     keys.filter(|(key, here)| !same(key, &then[*key], here))
-        .map(|(key, here)| format!("{key} is {} there and {here} here", then[key]))
+        .map(|(key, here)| format!("{key} was {} and is {here} now", then[key]))
         .collect()
 }
 
@@ -308,34 +308,31 @@ mod tests {
         assert_eq!(check(|_| ()), Ok(()));
         assert_eq!(check(|s| s.scene = "elsewhere/room".to_owned()), Ok(()));
         let changes: [Setting; 12] = [
-            (|s| s.scene = "a/hall".to_owned(), "scene is \"room\" there and \"a/hall\" here"),
-            (|s| s.width = 501, "width is 500 there and 501 here"),
-            (|s| s.height = 1, "height is 400 there and 1 here"),
-            (|s| s.antialiasing = 3, "antialiasing is 2 there and 3 here"),
+            (|s| s.scene = "a/hall".to_owned(), "scene was \"room\" and is \"a/hall\" now"),
+            (|s| s.width = 501, "width was 500 and is 501 now"),
+            (|s| s.height = 1, "height was 400 and is 1 now"),
+            (|s| s.antialiasing = 3, "antialiasing was 2 and is 3 now"),
             (
                 |s| s.sampling = "importance".to_owned(),
-                "sampling is \"lattice\" there and \"importance\" here",
+                "sampling was \"lattice\" and is \"importance\" now",
             ),
-            (|s| s.adaptive = true, "adaptive is false there and true here"),
+            (|s| s.adaptive = true, "adaptive was false and is true now"),
             (
                 |s| s.formulas = "textbook".to_owned(),
-                "formulas is \"robust\" there and \"textbook\" here",
+                "formulas was \"robust\" and is \"textbook\" now",
             ),
-            (|s| s.precision = "f64".to_owned(), "precision is \"f32\" there and \"f64\" here"),
-            (|s| s.lanes = 1, "lanes is 8 there and 1 here"),
-            (|s| s.share_samples = false, "share_samples is true there and false here"),
-            (|s| s.accel = "none".to_owned(), "accel is \"auto\" there and \"none\" here"),
-            (|s| s.tile = 16, "tile is 32 there and 16 here"),
+            (|s| s.precision = "f64".to_owned(), "precision was \"f32\" and is \"f64\" now"),
+            (|s| s.lanes = 1, "lanes was 8 and is 1 now"),
+            (|s| s.share_samples = false, "share_samples was true and is false now"),
+            (|s| s.accel = "none".to_owned(), "accel was \"auto\" and is \"none\" now"),
+            (|s| s.tile = 16, "tile was 32 and is 16 now"),
         ];
         let help = "use the same scene and options, or measure a new baseline with these (--json)";
         for (change, difference) in changes {
             assert_eq!(check(change), Err(format!("{difference}: {help}")));
         }
         let both = check(|s| (s.lanes, s.tile) = (4, 7)).expect_err("another");
-        assert_eq!(
-            both,
-            format!("lanes is 8 there and 4 here, tile is 32 there and 7 here: {help}")
-        );
+        assert_eq!(both, format!("lanes was 8 and is 4 now, tile was 32 and is 7 now: {help}"));
     }
 
     #[test]

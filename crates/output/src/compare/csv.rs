@@ -25,8 +25,8 @@ pub(super) fn text(results: &Results) -> String {
     String::from_utf8(bytes).expect("CSV of text is text")
 }
 
-/// Returns name and value of each column: the record's keys and some of the machine's. Of the lists
-/// of samples there is only the number.
+/// Returns name and value of each column: the record's keys and some of the machine's. `samples_ns`
+/// becomes the column `samples`, its length; the other lists are left out.
 fn cells(record: &Record, machine: &Value) -> Vec<(String, String)> {
     let mut cells = Vec::new();
     for (key, value) in json::value(record).as_object().into_iter().flatten() {

@@ -144,7 +144,7 @@ pub(crate) fn machine() -> Machine {
     }
 }
 
-/// Returns the noise of ten seconds in which other programs used 1 % of the machine.
+/// Returns the noise of ten seconds in which others used 1 % of the machine.
 pub(crate) fn noise() -> Noise {
     Noise {
         wall_s: 10.0,

@@ -154,8 +154,8 @@ fn cost(group: &[Record]) -> Vec<String> {
             format!("the cost is even: equal shares of tiles differ by {percent:.0} %")
         } else {
             format!(
-                "equal shares of tiles have {imbalance:.2} as maximum over mean cost and allow at \
-                 most {most:.2}{measured}"
+                "with equal shares of tiles the busiest thread has {imbalance:.2} times the mean \
+                 cost, so at most {most:.2}{measured}"
             )
         });
     }
@@ -234,9 +234,9 @@ mod tests {
         // the cost.
         assert_eq!(
             line("corner:"),
-            "corner: no strategy pays off, sequential is fastest; equal shares of tiles have \
-             6750.00 as maximum over mean cost and allow at most 1.33 (measured: 0.90); one tile \
-             has 75 % of the cost, so whole tiles allow at most 1.33; the whole image takes 5.00 \
+            "corner: no strategy pays off, sequential is fastest; with equal shares of \
+             tiles the busiest thread has 6750.00 times the mean cost, so at most 1.33 (measured: \
+             0.90); one tile has 75 % of the cost, so whole tiles allow at most 1.33; the whole image takes 5.00 \
              ms, so starting threads and scheduling matter."
         );
     }

@@ -38,7 +38,7 @@ rays: primary rays, counted in the warm-up; +: more than the image needs as a si
 const SHARING: &str =
     "sharing: without it sequential takes 3.00 [3.00, 3.00] times as long, in the same rounds.\n";
 
-const MACHINE: &str = "noise: other programs used 1.0 % of the machine; \
+const MACHINE: &str = "noise: others used 1.0 % of the machine; \
 other virtual machines on the host took 0.1 s of it; 34 involuntary context switches; 2400 to 3600 \
 MHz.
 machine: A CPU, 8 logical cores, 2 available, quota 1.5 cores, linux x86_64
@@ -64,7 +64,7 @@ fn table_is_plain_text() {
 fn doubtful_figures_are_reported() {
     let disturbed =
         Noise { share_of_others: Some(0.25), throttled: Some(3), disturbed: true, ..noise() };
-    let expected = "noise: other programs used 25.0 % of the machine; other virtual machines on \
+    let expected = "noise: others used 25.0 % of the machine; other virtual machines on \
                     the host took 0.1 s of it; the CPU quota stopped this program 3 times; 34 \
                     involuntary context switches; 2400 to 3600 MHz.\n\
                     DISTURBED: measure again when the machine is quiet.";
@@ -142,10 +142,11 @@ fn json_has_the_keys_that_stay() {
 /// Catches a key that is written and not read back.
 #[test]
 fn what_is_written_is_read() {
-    let written = both();
+    let mut written = both().compared_with(&both());
+    (written.seed, written.precision_goal) = (7, Some(0.01));
+    written.not_measured = vec!["later.toml".to_owned()];
     let read = Results::parse(&written.json()).expect("a list");
-    assert_eq!((read.results, read.machine), (written.results, written.machine));
-    assert_eq!((read.noise, read.sharing_speedup), (written.noise, written.sharing_speedup));
+    assert_eq!(json::value(&read), json::value(&written));
 }
 
 /// Catches a part of a list in the previous schema that gets lost.
@@ -155,8 +156,8 @@ fn the_previous_schema_is_read() {
         "schema": 1, "scene": "room", "width": 500, "height": 400, "antialiasing": 2,
         "sampling": "lattice", "adaptive": false, "formulas": "robust", "precision": "f32",
         "lanes": 8, "share_samples": true, "search": "auto", "tile": 32, "rounds": 2,
-        "interrupted": false, "seed": 1, "digest": "DIGEST", "machine": MACHINE,
-        "precision_goal": null, "noise": NOISE,
+        "interrupted": true, "seed": 1, "digest": "DIGEST", "machine": MACHINE,
+        "precision_goal": 0.01, "noise": NOISE,
         "results": [{
             "strategy": "pool", "threads": 2, "control": false, "identical": true,
             "digest": "DIGEST", "median_ns": 1025641026, "samples_ns": [1025641026, 1025641026],
@@ -187,15 +188,19 @@ fn the_previous_schema_is_read() {
         ..row("pool", 2, "pool", 1_025_641_026)
     };
     let read = Results::parse(&then).expect("a list");
-    assert_eq!((read.results, read.seed, read.noise), (vec![record(pool)], 1, noise()));
+    let expected = vec![Record { interrupted: true, ..record(pool) }];
+    assert_eq!((read.results, read.seed, read.noise), (expected, 1, noise()));
+    assert_eq!(read.precision_goal, Some(0.01));
 
     let unshared = then.replace("\"share_samples\": true", "\"share_samples\": false");
     let shared = then.trim_end().trim_end_matches('}');
     let sharing = |list: &Results| {
         list.results.iter().map(|record| record.subject.share_samples).collect::<Vec<_>>()
     };
-    let both = format!("{shared}, \"unshared\": {unshared}}}");
-    assert_eq!(sharing(&Results::parse(&both).expect("a list")), [true, false]);
+    let both = json::text(&speedup);
+    let both = format!("{shared}, \"sharing_speedup\": {both}, \"unshared\": {unshared}}}");
+    let both = Results::parse(&both).expect("a list");
+    assert_eq!((sharing(&both), both.sharing_speedup), (vec![true, false], Some(speedup)));
     let scenes =
         format!(r#"{{"schema": 1, "comparisons": [{unshared}, {then}], "not_measured": ["x"]}}"#);
     let scenes = Results::parse(&scenes).expect("a list");

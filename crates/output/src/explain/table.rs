@@ -145,8 +145,8 @@ fn advice(row: &ExplainedStrategy) -> String {
     }
     let help = match cause {
         Cause::Redundant => {
-            "Its pieces compute again what the pixels of a tile share.\n\
-             A strategy with larger pieces helps, or a larger --tile."
+            "Its pieces cost more than tiles: they trace shared samples again, or fill no packets.\n\
+             A strategy with larger pieces helps; for tiles a larger --tile."
         }
         Cause::Slowdown => {
             "The same pieces take longer when all threads compute: cores share memory, clock or\n\

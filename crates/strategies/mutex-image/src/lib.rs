@@ -29,7 +29,7 @@ impl Strategy for MutexImage {
     }
 
     fn summary(&self) -> &'static str {
-        "an equal share of the pixels a thread, one lock around the picture taken for each pixel"
+        "an equal share of the pixels a thread, one mutex around the image, locked for each pixel"
     }
 
     fn threads(&self) -> Threads {

@@ -29,7 +29,7 @@ impl Strategy for MutexRows {
     }
 
     fn summary(&self) -> &'static str {
-        "an equal share of the rows a thread, one lock around the picture taken for each row"
+        "an equal share of the rows a thread, one mutex around the image, locked for each row"
     }
 
     fn threads(&self) -> Threads {

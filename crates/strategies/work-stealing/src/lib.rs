@@ -4,7 +4,7 @@
 //!   takes its own from the front; an idle thread takes half of another's from the back.
 //! * **What it costs**: cutting the image into tiles and queueing them, starting the threads
 //!   within every rendering, and at the end up to one tile's time of waiting. To take one of its
-//!   own tiles costs a thread a few ns, whatever the other threads do; a theft some 100 ns.
+//!   own tiles costs a thread a few ns, whatever the other threads do; a steal some 100 ns.
 //! * **When it is right**: for uneven work on many threads, which would all wait for one queue; and
 //!   where neighbouring tiles in one thread find their data in its cache.
 //!
