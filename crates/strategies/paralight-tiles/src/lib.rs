@@ -33,7 +33,7 @@ impl Strategy for ParalightTiles {
     }
 
     fn summary(&self) -> &'static str {
-        "paralight: an equal range of the tiles a thread; who is idle takes half of another's"
+        "paralight: an equal range of the tiles a thread; an idle thread takes half of another's"
     }
 
     fn threads(&self) -> Threads {

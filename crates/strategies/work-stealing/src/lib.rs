@@ -31,7 +31,7 @@ impl Strategy for WorkStealing {
     }
 
     fn summary(&self) -> &'static str {
-        "an equal range of the tiles a thread; who is idle steals half of another's"
+        "an equal range of the tiles a thread; an idle thread steals half of another's"
     }
 
     fn threads(&self) -> Threads {
