@@ -13,9 +13,9 @@
 //! * [`rayweave_accuracy`]: speed against error, and hard cases with exact answers.
 //! * [`rayweave_output`]: results as tables, JSON, CSV, Markdown and SVG.
 //!
-//! Each subcommand is one file of `commands`. Only this crate prints: results to standard output, errors
-//! and progress to standard error. Exit status: 0 done and every check passed; 1 a check failed; 2
-//! the request or its input was wrong, or the machine cannot meet it; 130 interrupted.
+//! Each subcommand is one file of `commands`. Only this crate prints: results to standard output,
+//! errors and progress to standard error. Exit status: 0 done and every check passed; 1 a check
+//! failed; 2 the request or its input was wrong, or the machine cannot meet it; 130 interrupted.
 
 mod commands;
 mod files;

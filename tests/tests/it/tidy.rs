@@ -215,7 +215,8 @@ fn no_file_outgrows_its_purpose() {
     }
 }
 
-/// Catches a line that does not fit in 100 columns, in code, comments, prose, manifests or shell scripts.
+/// Catches a line that does not fit in 100 columns, in code, comments, prose, manifests or shell
+/// scripts.
 /// Tables and code blocks of Markdown are as wide as they have to be, and so is malformed input.
 #[test]
 fn no_line_is_wider_than_100_columns() {

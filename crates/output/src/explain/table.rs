@@ -145,7 +145,7 @@ fn advice(row: &ExplainedStrategy) -> String {
     }
     let help = match cause {
         Cause::Redundant => {
-            "Its pieces cost more than tiles: they trace shared samples again, or fill no packets.\n\
+            "Its pieces cost more than tiles: they share no samples, or fill no packets.\n\
              A strategy with larger pieces helps; for tiles a larger --tile."
         }
         Cause::Slowdown => {
