@@ -12,7 +12,10 @@ use std::path::Path;
 pub fn load(path: Option<&Path>) -> Result<(String, SceneFile), String> {
     Ok(match path {
         Some(path) => {
-            (path.display().to_string(), scene_file::load(path).map_err(|e| e.to_string())?)
+            // Escaped where it is not UTF-8, so that two names stay two.
+            let bytes = || path.as_os_str().as_encoded_bytes().escape_ascii().to_string();
+            let name = path.to_str().map_or_else(bytes, str::to_owned);
+            (name, scene_file::load(path).map_err(|e| e.to_string())?)
         }
         None => ("report (built in)".to_owned(), scene_file::report_scene()),
     })

@@ -10,7 +10,8 @@ use std::thread;
 const GROUPS: &str = "/sys/fs/cgroup";
 
 /// Facts about this machine and this program.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct Machine {
     /// The processor's model, or "unknown".
     pub cpu: String,

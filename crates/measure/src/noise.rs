@@ -17,6 +17,7 @@ const QUIET: f64 = 0.02;
 
 /// The other activity on the machine during a measurement; `None` where the system does not tell.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct Noise {
     /// The duration of the measurement, in seconds.
     pub wall_s: f64,

@@ -64,10 +64,13 @@ pub struct Record {
     #[serde(flatten)]
     pub subject: Subject,
     /// The number of rounds that were measured.
+    #[serde(default)]
     pub rounds: usize,
     /// True if the measurement was interrupted after these.
+    #[serde(default)]
     pub interrupted: bool,
     /// True if [other programs](Noise::disturbed) make the times doubtful.
+    #[serde(default)]
     pub disturbed: bool,
     /// The digest of the reference's image, in hexadecimal.
     pub reference_digest: String,
@@ -86,12 +89,16 @@ pub struct Record {
 pub struct Results {
     schema: u32,
     /// The seed of the order within the rounds.
+    #[serde(default)]
     pub seed: u64,
     /// The precision that was asked for: half of an interval as a share of its median.
+    #[serde(default)]
     pub precision_goal: Option<f64>,
     /// The machine that ran the measurement.
+    #[serde(default)]
     pub machine: Machine,
     /// Other activity on the machine meanwhile.
+    #[serde(default)]
     pub noise: Noise,
     /// The reference's time without shared samples over its time with them, where both were
     /// measured.
@@ -138,14 +145,16 @@ impl Results {
     pub fn parse(text: &str) -> Result<Self, String> {
         let not_a_list = |e: serde_json::Error| format!("not the JSON of a comparison: {e}");
         let object: serde_json::Value = serde_json::from_str(text).map_err(not_a_list)?;
-        let object = match object.get("schema").and_then(serde_json::Value::as_u64) {
-            Some(1) => schema_1::upgraded(object).map_err(not_a_list)?,
-            Some(theirs) if theirs != u64::from(SCHEMA) => {
+        let object = match object.get("schema") {
+            None => return Err("not the JSON of a comparison: it has no schema".to_owned()),
+            Some(schema) if schema == 1 => schema_1::upgraded(object).map_err(not_a_list)?,
+            Some(schema) if *schema == SCHEMA => object,
+            Some(theirs) => {
                 return Err(format!(
-                    "its schema is {theirs}, and this program reads 1 to {SCHEMA}"
+                    "its schema is {theirs}, and this program reads 1 and {SCHEMA}: measure a new \
+                     baseline"
                 ));
             }
-            _ => object,
         };
         serde_json::from_value(object).map_err(not_a_list)
     }
@@ -167,14 +176,14 @@ impl Results {
     #[must_use]
     pub fn markdown(&self) -> String {
         let tables: String = self.groups().map(|group| markdown::text(self, group)).collect();
-        if self.has_several_scenes() { scenes::markdown(self) + &tables } else { tables }
+        if self.has_scenes() { scenes::markdown(self) + &tables } else { tables }
     }
 
     /// Returns the list as plain text without colours or a newline at the end: one table for each
     /// subject, or one table with several scenes side by side.
     #[must_use]
     pub fn table(&self) -> String {
-        if self.has_several_scenes() { scenes::text(self) } else { table::text(self) }
+        if self.has_scenes() { scenes::text(self) } else { table::text(self) }
     }
 
     /// Returns whether every strategy rendered the reference's image every time.
@@ -188,9 +197,9 @@ impl Results {
         self.results.chunk_by(|a, b| a.subject == b.subject)
     }
 
-    fn has_several_scenes(&self) -> bool {
-        self.results.iter().any(|record| record.subject.scene != self.results[0].subject.scene)
-            || !self.not_measured.is_empty()
+    /// Returns whether scenes stand side by side: the costs of their tiles are known.
+    fn has_scenes(&self) -> bool {
+        self.results.iter().any(|record| record.imbalance.is_some())
     }
 
     /// Computes the reference's time without shared samples over its time with them, round by

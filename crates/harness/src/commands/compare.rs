@@ -289,7 +289,7 @@ fn measure(
     let mut executors: Vec<&mut dyn Executor> =
         executors.iter_mut().map(|executor| executor as &mut dyn Executor).collect();
 
-    let costs = (scenes > 1).then(|| tile_costs(input, tile)).transpose()?;
+    let costs = (!options.scenes.is_empty()).then(|| tile_costs(input, tile)).transpose()?;
     let monitor = NoiseMonitor::start();
     let comparisons = protocol(options, subjects.len(), scenes).run_together(
         rayweave_registry::reference(),

@@ -34,24 +34,41 @@ pub struct Change {
 ///
 /// One of them was not measured then; the message names the settings that differ.
 pub fn comparable(then: &Results, subjects: &[Subject]) -> Result<(), String> {
-    let missing = |subject: &&Subject| then.groups().all(|group| !is_same(&group[0], subject));
-    let Some(subject) = subjects.iter().find(missing) else { return Ok(()) };
-    // The differences from the subject that is most like it.
-    let differences = then.groups().map(|group| differences(&group[0].subject, subject));
-    let differences = differences.min_by_key(Vec::len).unwrap_or_default();
-    let differences = match &differences[..] {
-        [] => "it has no results".to_owned(),
-        differences => differences.join(", "),
-    };
-    Err(format!(
-        "{differences}: use the same scene and options, or measure a new baseline with these \
-         (--json)"
-    ))
+    let help =
+        "use the same scene and options, or measure a new baseline with these (--json)".to_owned();
+    for subject in subjects {
+        let namesakes = subjects.iter().filter(|other| differences(other, subject).is_empty());
+        let found = same_subject(then, subject);
+        // One group cannot be the baseline of two scenes.
+        let is_exact = found.is_some_and(|group| group[0].subject.scene == subject.scene);
+        if is_exact || (found.is_some() && namesakes.count() == 1) {
+            continue;
+        }
+        // The differences from the subject that is most like it.
+        let differences = then.groups().map(|group| differences(&group[0].subject, subject));
+        return Err(match differences.min_by_key(Vec::len) {
+            None => format!("it has no results: {help}"),
+            Some(none) if none.is_empty() => {
+                let scene = &subject.scene;
+                format!("more than one scene has the file name of {scene}: {help}")
+            }
+            Some(differences) => format!("{}: {help}", differences.join(", ")),
+        });
+    }
+    Ok(())
 }
 
-/// Returns whether a record is of this subject, wherever the scene file is.
-fn is_same(record: &Record, subject: &Subject) -> bool {
-    differences(&record.subject, subject).is_empty()
+/// Returns the records of the same subject: of the same path, or else of the one scene with the
+/// same file name.
+fn same_subject<'a>(then: &'a Results, subject: &Subject) -> Option<&'a [Record]> {
+    let same = |group: &&[Record]| differences(&group[0].subject, subject).is_empty();
+    let alike: Vec<&[Record]> = then.groups().filter(same).collect();
+    let exact = alike.iter().find(|group| group[0].subject.scene == subject.scene);
+    match (exact, &alike[..]) {
+        (Some(exact), _) => Some(exact),
+        (None, [one]) => Some(one),
+        _ => None,
+    }
 }
 
 fn differences(then: &Subject, now: &Subject) -> Vec<String> {
@@ -76,10 +93,9 @@ impl Results {
         self
     }
 
-    /// Returns the records of the same subject in this list.
+    /// Returns the records of the same subject in this list; none if there is no such subject.
     fn same_group(&self, now: &[Record]) -> &[Record] {
-        let same = |group: &&[Record]| is_same(&group[0], &now[0].subject);
-        self.groups().find(same).unwrap_or_default()
+        same_subject(self, &now[0].subject).unwrap_or_default()
     }
 }
 
@@ -99,9 +115,12 @@ fn changes(then: &[Record], now: &[Record]) -> Vec<Change> {
         };
         let earlier = then.iter().filter(|record| alike(&&record.measurement)).map(times).next();
         let (now, then) = (times(record), earlier.unwrap_or_default());
-        let time = median_ratio_interval(&floats(&now), &floats(&then));
+        // Times of 0 have no ratio.
+        let finite = |ratio: &Interval| ratio.low.is_finite() && ratio.high.is_finite();
+        let time = median_ratio_interval(&floats(&now), &floats(&then)).filter(finite);
         let relative_time =
-            median_ratio_interval(&ratios(&now, &reference_now), &ratios(&then, &reference_then));
+            median_ratio_interval(&ratios(&now, &reference_now), &ratios(&then, &reference_then))
+                .filter(finite);
         // The reference's relative time is always 1, so its own time decides.
         let verdict = verdict(if place == 0 { time } else { relative_time });
         Change {
@@ -154,9 +173,11 @@ fn doubts(now: &Results, then: &Results) -> Vec<String> {
 
 /// Returns the reason to doubt the times of a run, if there is one.
 fn doubt(results: &Results) -> Option<String> {
+    let disturbed =
+        results.noise.disturbed || results.results.iter().any(|record| record.disturbed);
     let off = |group: &[Record]| control(group).is_some_and(|control| !control.contains(1.0));
     let causes = [
-        results.noise.disturbed.then_some("was disturbed"),
+        disturbed.then_some("was disturbed"),
         results.groups().any(off).then_some("has a control whose interval does not contain 1"),
     ];
     let causes: Vec<&str> = causes.into_iter().flatten().collect();
@@ -294,6 +315,30 @@ mod tests {
         }
     }
 
+    /// Catches a scene compared with another one of the same file name.
+    #[test]
+    fn a_scene_is_compared_with_that_of_its_path() {
+        let of = |scene: &str, factor| {
+            let mut list = slowed(factor, factor).results;
+            list.iter_mut().for_each(|record| record.subject.scene = scene.to_owned());
+            list
+        };
+        let list = |groups: Vec<Vec<Record>>| Results { results: groups.concat(), ..results() };
+        let then = list(vec![of("a/x.toml", 1.0), of("b/x.toml", 2.0)]);
+        let at = |scene: &str| Subject { scene: scene.to_owned(), ..subject() };
+        let changes = list(vec![of("b/x.toml", 2.0)]).compared_with(&then).changes;
+        assert_eq!(changes.expect("changes")[0].verdict, "as before");
+        assert_eq!(comparable(&then, &[at("b/x.toml")]), Ok(()));
+        let refused = comparable(&then, &[at("c/x.toml")]).expect_err("which of the two?");
+        assert!(refused.starts_with("more than one scene has the file name of c/x.toml: "));
+        let one = list(vec![of("a/x.toml", 1.0)]);
+        assert_eq!(comparable(&one, &[at("c/x.toml")]), Ok(()));
+        assert!(comparable(&one, &[at("c/x.toml"), at("d/x.toml")]).is_err());
+        assert!(
+            comparable(&list(Vec::new()), &[at("a")]).is_err_and(|e| e.starts_with("it has no"))
+        );
+    }
+
     /// A setting that is changed, and how that is told.
     type Setting = (fn(&mut Subject), &'static str);
 
@@ -342,6 +387,9 @@ mod tests {
         assert!(refused("[1]").starts_with("not the JSON of a comparison: "));
         assert!(refused(r#"{"schema": 1}"#).starts_with("not the JSON of a comparison: "));
         let later = r#"{"schema": 3, "digest": "", "results": []}"#;
-        assert_eq!(refused(later), "its schema is 3, and this program reads 1 to 2");
+        assert_eq!(
+            refused(later),
+            "its schema is 3, and this program reads 1 and 2: measure a new baseline"
+        );
     }
 }

@@ -1,6 +1,6 @@
 //! The list as tables in Markdown.
 
-use super::table::{heading, milliseconds};
+use super::table::{computed, heading, milliseconds};
 use super::{Record, Results};
 use crate::{machine, style};
 
@@ -14,7 +14,8 @@ pub(super) fn text(results: &Results, group: &[Record]) -> String {
     let facts = machine::text(&results.machine).replace('\n', "; ");
     let disturbed = if group[0].disturbed { " **Disturbed by other programs.**" } else { "" };
     let again = if group[0].subject == results.results[0].subject { "" } else { "\n" };
-    format!("{again}{}\n\n{HEADER}{rows}\n{facts}.{disturbed}\n", heading(group))
+    let (heading, computed) = (heading(group), computed(&group[0].subject));
+    format!("{again}{heading}; {computed}\n\n{HEADER}{rows}\n{facts}.{disturbed}\n")
 }
 
 /// Returns a table of `rows`, each with a strategy, threads and a cell a scene, and `sentences`

@@ -236,8 +236,8 @@ mod tests {
             line("corner:"),
             "corner: no strategy pays off, sequential is fastest; with equal shares of \
              tiles the busiest thread has 6750.00 times the mean cost, so at most 1.33 (measured: \
-             0.90); one tile has 75 % of the cost, so whole tiles allow at most 1.33; the whole image \
-             takes 5.00 ms, so starting threads and scheduling matter."
+             0.90); one tile has 75 % of the cost, so whole tiles allow at most 1.33; the whole \
+             image takes 5.00 ms, so starting threads and scheduling matter."
         );
     }
 

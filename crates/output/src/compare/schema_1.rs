@@ -4,7 +4,7 @@
 use serde::de::Error;
 use serde_json::{Map, Value, json};
 
-/// Returns the same list in schema 2.
+/// Returns the list that says the same in schema 2.
 pub(super) fn upgraded(mut file: Value) -> Result<Value, serde_json::Error> {
     let unshared = file.as_object_mut().and_then(|file| file.remove("unshared"));
     let objects = match file.get_mut("comparisons").map(Value::take) {
@@ -12,28 +12,30 @@ pub(super) fn upgraded(mut file: Value) -> Result<Value, serde_json::Error> {
         _ => [Some(file.clone()), unshared].into_iter().flatten().collect(),
     };
     let mut results = Vec::new();
-    for object in &objects {
+    for object in objects.iter().filter(|object| !object.is_null()) {
         let Some(old) = object.get("results").and_then(Value::as_array) else {
             return Err(serde_json::Error::missing_field("results"));
         };
-        results.extend(old.iter().map(|result| record(object, result)));
+        for result in old {
+            results.push(record(object, result)?);
+        }
     }
+    let mut list = json!({ "schema": super::SCHEMA, "results": results });
+    // Earlier versions wrote fewer keys. The changes are left out: they can be computed again.
     let first = objects.first().unwrap_or(&Value::Null);
-    // Changes are left out, because they can be computed again.
-    Ok(json!({
-        "schema": super::SCHEMA,
-        "seed": first["seed"],
-        "precision_goal": first["precision_goal"],
-        "machine": first["machine"],
-        "noise": first["noise"],
-        "sharing_speedup": first["sharing_speedup"],
-        "results": results,
-        "not_measured": file.get("not_measured").cloned().unwrap_or_else(|| json!([])),
-    }))
+    for key in ["seed", "precision_goal", "machine", "noise", "sharing_speedup"] {
+        if !first[key].is_null() {
+            list[key] = first[key].clone();
+        }
+    }
+    if let Some(not_measured) = file.get("not_measured") {
+        list["not_measured"] = not_measured.clone();
+    }
+    Ok(list)
 }
 
 /// Returns one record from the settings of its object and its own keys.
-fn record(object: &Value, result: &Value) -> Value {
+fn record(object: &Value, result: &Value) -> Result<Value, serde_json::Error> {
     let keys = |value: &Value| value.as_object().cloned().unwrap_or_default();
     let mut record: Map<String, Value> = keys(object);
     for other in ["machine", "noise", "results", "changes"] {
@@ -41,14 +43,20 @@ fn record(object: &Value, result: &Value) -> Value {
     }
     let reference_digest = record.remove("digest").unwrap_or_default();
     record.insert("reference_digest".to_owned(), reference_digest);
-    record.insert("disturbed".to_owned(), object["noise"]["disturbed"].as_bool().into());
-    let accel = if object["search"] == "exhaustive" { "none" } else { "auto" };
-    record.insert("accel".to_owned(), accel.into());
+    let disturbed = object["noise"]["disturbed"].as_bool().unwrap_or_default();
+    record.insert("disturbed".to_owned(), disturbed.into());
+    let accel = match &object["search"] {
+        Value::Null => return Err(serde_json::Error::missing_field("search")),
+        search if search == "exhaustive" => "none".into(),
+        search => search.clone(),
+    };
+    record.insert("accel".to_owned(), accel);
     record.extend(keys(result));
     let starts_threads = match result["threads_start"].as_str() {
+        Some("never") => "none",
         Some("prepare") => "pool",
         Some("render") => "per-render",
-        _ => "none",
+        other => other.unwrap_or_default(),
     };
     record.insert("starts_threads".to_owned(), starts_threads.into());
     // Unknown lists were null.
@@ -58,5 +66,5 @@ fn record(object: &Value, result: &Value) -> Value {
     record.insert("cold_ns".to_owned(), cold["median_ns"].clone());
     record.insert("cold_speedup".to_owned(), cold["speedup"].clone());
     record.insert("cold_samples_ns".to_owned(), list(&cold["samples_ns"]));
-    Value::Object(record)
+    Ok(Value::Object(record))
 }

@@ -192,6 +192,12 @@ fn the_previous_schema_is_read() {
     assert_eq!((read.results, read.seed, read.noise), (expected, 1, noise()));
     assert_eq!(read.precision_goal, Some(0.01));
 
+    // The first lists had fewer keys.
+    let early = then.replace("\"interrupted\": true,", "").replace("\"seed\": 1,", "");
+    assert!(!Results::parse(&early).expect("a list").results[0].interrupted);
+    let unknown = Results::parse(&then.replace("\"search\": \"auto\",", ""));
+    assert!(unknown.is_err_and(|e| e.ends_with("missing field `search`")));
+
     let unshared = then.replace("\"share_samples\": true", "\"share_samples\": false");
     let shared = then.trim_end().trim_end_matches('}');
     let sharing = |list: &Results| {
