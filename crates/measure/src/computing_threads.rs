@@ -75,7 +75,7 @@ impl Rendezvous {
         timeout: Duration,
     ) -> Result<usize, CountError> {
         let mut image = Image::new(self.width, self.height)?;
-        let meeting = Meeting::new(self.plan.threads, timeout);
+        let meeting = RendezvousWork::new(self.plan.threads, timeout);
         catch_panic(|| strategy.prepare(self.plan)?.render(&meeting, &mut image))
             .map_err(CountError::Strategy)?;
         Ok(meeting.threads())
@@ -84,7 +84,7 @@ impl Rendezvous {
 
 /// A work that returns from its first tiles only when enough distinct threads compute one each.
 #[derive(Debug)]
-struct Meeting {
+struct RendezvousWork {
     threads: usize,
     timeout: Duration,
     state: Mutex<State>,
@@ -111,7 +111,7 @@ enum Phase {
     GivenUp,
 }
 
-impl Meeting {
+impl RendezvousWork {
     fn new(threads: NonZeroUsize, timeout: Duration) -> Self {
         let state = Mutex::new(State { seen: HashSet::new(), phase: Phase::Empty });
         Self { threads: threads.get(), timeout, state, changed: Condvar::new() }
@@ -122,7 +122,7 @@ impl Meeting {
     }
 }
 
-impl Work for Meeting {
+impl Work for RendezvousWork {
     fn render(&self, tile: &mut Tile<'_>) {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         if !matches!(state.phase, Phase::GivenUp) {
@@ -168,11 +168,11 @@ mod tests {
         meeting.threads()
     }
 
-    fn meeting_of(threads: usize, timeout: Duration) -> Meeting {
-        Meeting::new(NonZeroUsize::new(threads).expect("not 0"), timeout)
+    fn meeting_of(threads: usize, timeout: Duration) -> RendezvousWork {
+        RendezvousWork::new(NonZeroUsize::new(threads).expect("not 0"), timeout)
     }
 
-    fn compute(meeting: &Meeting) {
+    fn compute(meeting: &RendezvousWork) {
         (0..10).for_each(|x| meeting.render(&mut Tile::pixel(x, 0, &mut [1.0; 3])));
     }
 

@@ -1,5 +1,5 @@
-//! The tracer agrees with the image model, an independent `f64` rendering, sample by sample, of
-//! scenes that neither was written for.
+//! Compares the tracer with the image model, an independent `f64` rendering, on random scenes and
+//! on those of the repository.
 
 use rayweave_core::Scene;
 use rayweave_tests::scenes::{PRECISIONS, named};
@@ -8,7 +8,7 @@ use rayweave_tests::{image, model, random_scene::random_scene};
 const WIDTH: u32 = 96;
 const HEIGHT: u32 = 72;
 
-/// The PSNR of the tracer in `f32` and in `f64`.
+/// Returns the PSNR of the tracer in `f32` and in `f64`.
 fn agreement(scene: &Scene) -> [f64; 2] {
     let truth = model::render(scene, WIDTH, HEIGHT);
     PRECISIONS

@@ -1,5 +1,5 @@
 //! Culling by planes, cones and bounding spheres changes no image. In scenes of a few primitives
-//! acceleration has the bits of trying everything, also where eyes and lights stand in planes, on
+//! acceleration gives the same bits as brute force, also where eyes and lights stand in planes, on
 //! surfaces and inside of primitives, and where rays run along them.
 
 use glam::{DVec3, dvec3 as v};

@@ -1,5 +1,4 @@
-//! The study of speed against error: its errors are those of the images, and its advice follows
-//! from them.
+//! Checks the errors, the Pareto front and the advice of a study of speed against error.
 
 use rayweave_accuracy::ImageDifference;
 use rayweave_accuracy::tradeoff::{
@@ -31,8 +30,8 @@ fn rendered(scene: &Scene, setting: Setting) -> Image {
     render(&*setting.work(scene, SIZE).expect("a sound scene")).expect("an image")
 }
 
-/// Catches errors that are another setting's, an arithmetic that is compared with other rays, a
-/// front or an advice that does not follow from times and errors.
+/// Catches the errors of another setting, an arithmetic compared with other rays, and a front or
+/// an advice that does not follow from times and errors.
 #[test]
 fn each_row_is_of_its_setting() {
     let scene = scenes::named("room");

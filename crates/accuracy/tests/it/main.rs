@@ -2,10 +2,10 @@
 
 mod corpus;
 mod families;
-mod format;
+mod json_format;
 mod kernel;
+mod kernel_guarantees;
 mod oracle;
-mod oracle_properties;
 
 /// Returns the items as a file of JSON lines.
 fn written<T: serde::Serialize>(items: &[T]) -> String {

@@ -1,6 +1,6 @@
 //! Culling of what lies behind: without mirrors, no ray turns back.
 //!
-//! Rays from the eye go forward, and shadow rays from what they hit to the lights. All of them stay
+//! Rays from the eye go forward, and shadow rays go from their hits to the lights. All of them stay
 //! in front of the eye, or of the light that is farthest behind it, because a half space is convex.
 
 use crate::scene::{Cylinder, Scene, Sphere, Triangle, unit};
