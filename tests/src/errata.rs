@@ -1,7 +1,7 @@
 //! The places where the report that this project starts from is wrong, as cases with answers.
 //!
 //! The answers were computed apart from any code here, to 50 digits, from the decimals as they
-//! are written, and rounded to `f64`. The report's eye stands at (0, 0, -2).
+//! are written, and rounded to `f64`. The lab report's eye stands at (0, 0, -2).
 
 use crate::model::{Primitive, Ray};
 use crate::scenes::{cylinder, looking, plane, sphere, triangle, with};
@@ -47,7 +47,7 @@ pub struct ShadingCase {
     pub expected: DVec3,
 }
 
-/// The report's slips about a hit.
+/// The lab report's slips about a hit.
 pub const RAYS: [RayCase; 25] = [
     RayCase {
         name: "sphere without its centre: a miss",
@@ -240,7 +240,7 @@ pub const RAYS: [RayCase; 25] = [
     },
 ];
 
-/// The report's slips about a colour.
+/// The lab report's slips about a colour.
 #[must_use]
 pub fn shadings() -> Vec<ShadingCase> {
     let floor = |point| plane(point, DVec3::Y);
@@ -335,7 +335,7 @@ pub fn shadings() -> Vec<ShadingCase> {
         .into()
 }
 
-/// The report's triangle that was "misplaced", its other orientation, and its normal.
+/// The lab report's triangle that was "misplaced", its other orientation, and its normal.
 const SKEW: [DVec3; 3] = [v(-0.5, 1.0, 3.0), v(1.0, 0.8, 2.5), v(1.7, -0.2, 2.5)];
 const TURNED: [DVec3; 3] = [SKEW[0], SKEW[2], SKEW[1]];
 const SKEW_NORMAL: DVec3 = v(-0.335419420785874, -0.2347935945501118, -0.9123408245375774);

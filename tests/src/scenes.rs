@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 pub const PRECISIONS: [Precision; 2] = [Precision::F32, Precision::F64];
 
 /// The names of the scenes in `scenes`: those of the files, without the ending.
-pub const NAMES: [&str; 3] = ["report", "room", "imbalance"];
+pub const NAMES: [&str; 3] = ["lab", "room", "imbalance"];
 
 /// Reads the scene of this name; that of a hard one is `hard/fan`.
 ///
@@ -69,7 +69,7 @@ pub fn looking(from: DVec3, at: DVec3, lights: &[DVec3]) -> Scene {
     }
 }
 
-/// A scene without primitives under one light, seen from the report's eye.
+/// A scene without primitives under one light, seen from the lab report's eye.
 #[must_use]
 pub fn empty() -> Scene {
     let at = DVec3::new(11.0 / 15.0, 8.0 / 15.0, 8.0 / 3.0);

@@ -63,7 +63,7 @@ fn a_sample_that_fails_says_why_and_is_listed_nowhere() {
 #[test]
 fn a_scene_may_be_called_like_an_option() {
     let folder = folder();
-    fs::copy(program::scene("report.toml"), folder.path().join("--help.toml")).expect("copied");
+    fs::copy(program::scene("lab.toml"), folder.path().join("--help.toml")).expect("copied");
     let small = "--size 4x4 --antialiasing 0 --strategy sequential --time-limit 1";
     let text = rayweave(folder.path(), &format!("compare {small} -- --help.toml")).expect_success();
     assert!(text.starts_with("--help.toml, 4 x 4 pixels"), "{text}");
@@ -331,12 +331,12 @@ fn scenes_stand_beside_each_other() {
             "{scene}: {text}"
         );
     }
-    let two = format!("{},{}", program::scene("report.toml"), program::scene("loads/free.toml"));
+    let two = format!("{},{}", program::scene("lab.toml"), program::scene("loads/free.toml"));
     let (_, object) = rayweave_json(folder.path(), &format!("{small} --scenes {two}"));
     let results = results(&object);
     let scene = |number: usize| results[number]["scene"].as_str().expect("a path");
     // Each has the reference, its control and the queue.
-    assert!(results.len() == 6 && scene(0).ends_with("report.toml"));
+    assert!(results.len() == 6 && scene(0).ends_with("lab.toml"));
     assert!(scene(3).ends_with("free.toml") && results[5]["largest_tile"] == 1.0);
 
     let cases = [

@@ -26,12 +26,12 @@ use std::path::Path;
 use error::Source;
 
 /// The text of the built-in scene: the final scene of the lab report.
-pub const REPORT_SCENE: &str = include_str!("../../../scenes/report.toml");
+pub const REPORT_SCENE: &str = include_str!("../../../scenes/lab.toml");
 
 /// Returns the scene of [`REPORT_SCENE`].
 #[must_use]
 pub fn report_scene() -> SceneFile {
-    parse(REPORT_SCENE.as_bytes(), "report.toml")
+    parse(REPORT_SCENE.as_bytes(), "lab.toml")
         .expect("the built-in scene is sound, a test holds it")
 }
 

@@ -41,8 +41,8 @@ fn colours_are_as_they_should() {
     }
 }
 
-/// Catches the report's count of 5 x 5 rays for each of 500 x 500 pixels, 6,250,000: four rays of
-/// neighbouring pixels fall together.
+/// Catches the lab report's count of 5 x 5 rays for each of 500 x 500 pixels, 6,250,000: four
+/// rays of neighbouring pixels fall together.
 #[test]
 fn neighbours_share_their_samples() {
     let offsets: Vec<_> = samples(2).iter().map(|s| (s.dx, s.dy)).collect();
@@ -70,7 +70,7 @@ fn tolerance(precision: Precision) -> f64 {
     }
 }
 
-/// Catches each of the report's slips about a hit, in either precision.
+/// Catches each of the lab report's slips about a hit, in either precision.
 #[test]
 fn the_tracer_s_rays_hit_where_they_should() {
     for (case, precision) in RAYS.iter().flat_map(|case| PRECISIONS.map(|p| (case, p))) {
@@ -92,8 +92,8 @@ fn the_tracer_s_rays_hit_where_they_should() {
     }
 }
 
-/// Catches each of the report's slips about a colour, in either precision: along a single ray, and
-/// through the camera into an image.
+/// Catches each of the lab report's slips about a colour, in either precision: along a single ray,
+/// and through the camera into an image.
 #[test]
 fn the_tracer_s_colours_are_as_they_should() {
     for (case, precision) in shadings().iter().flat_map(|case| PRECISIONS.map(|p| (case, p))) {

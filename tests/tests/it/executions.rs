@@ -50,16 +50,16 @@ fn the_repository_s_scenes() {
 /// Catches the same in an image larger than a strategy's tile: many strips, many batches.
 #[test]
 fn a_larger_image() {
-    let mut scene = scenes::named("report");
+    let mut scene = scenes::named("lab");
     scene.render.antialiasing = 1;
-    executions_agree(&scene, (97, 75), ARITHMETICS[0], "report");
+    executions_agree(&scene, (97, 75), ARITHMETICS[0], "lab");
 }
 
 /// Catches sums in another order and points in a wrong slot at a density that is even, odd, as
 /// large as a block, or larger; and sharing where no point is shared.
 #[test]
 fn every_density() {
-    for (name, sampling) in [("room", Sampling::Lattice), ("report", Sampling::Importance)] {
+    for (name, sampling) in [("room", Sampling::Lattice), ("lab", Sampling::Importance)] {
         for antialiasing in [0, 1, 2, 3, 4, 5] {
             let mut scene = scenes::named(name);
             (scene.render.antialiasing, scene.render.sampling) = (antialiasing, sampling);
@@ -125,7 +125,7 @@ fn small_and_narrow_images() {
 /// Catches samples that are lost where one pixel, or a few, have more than are traced together.
 #[test]
 fn many_samples_a_pixel() {
-    let mut scene = scenes::named("report");
+    let mut scene = scenes::named("lab");
     for (antialiasing, size) in [(9, (5, 2)), (17, (2, 2)), (32, (1, 2))] {
         for (sampling, adaptive) in
             [(Sampling::Lattice, false), (Sampling::Importance, false), (Sampling::Lattice, true)]

@@ -17,7 +17,7 @@ type Golden = (&'static str, [u64; 4]);
 
 #[rustfmt::skip]
 const GOLDEN: [Golden; 6] = [
-    ("report", [0xec7e894541cae77d, 0x78091354ea4ef08c, 0xbb5e595df8eb25ab, 0x27a91ed89c290d3a]),
+    ("lab", [0xec7e894541cae77d, 0x78091354ea4ef08c, 0xbb5e595df8eb25ab, 0x27a91ed89c290d3a]),
     ("room", [0xf0385f984f0892d3, 0x4fc3dfb418e85bd6, 0x92b0ab31c5e977f1, 0xc087e509b8869bfc]),
     ("imbalance", [0x723242fbbdffb522, 0x4b6fa890b001baa1, 0x026870ebc1fa123a, 0x0c4e9263293a0cb1]),
     ("random 1", [0xe5c61e8eb0f406d6, 0x81b0d54b8a246bde, 0x16ad69731809da0d, 0x3998d874893c010a]),
@@ -28,14 +28,14 @@ const GOLDEN: [Golden; 6] = [
 /// The digests with the textbook's formulas, without antialiasing: in `f32` and in `f64`.
 #[rustfmt::skip]
 const TEXTBOOK: [(&str, [u64; 2]); 2] = [
-    ("report", [0x9f0d2ca82b800e26, 0x4f43191bd4523d08]),
+    ("lab", [0x9f0d2ca82b800e26, 0x4f43191bd4523d08]),
     ("room", [0x1c2df3ae0ca9c0e8, 0xa9f4854fe75fcee9]),
 ];
 
-/// The report's scene with samples by importance, a density of 2: in `f32` and in `f64`.
+/// The lab report's scene with samples by importance, a density of 2: in `f32` and in `f64`.
 const IMPORTANCE: [u64; 2] = [0x77b541ce95c7c347, 0x3481aa9114591d04];
 
-/// The room and the report's scene with a density of 4, adaptive: in `f32` and in `f64`.
+/// The room and the lab report's scene with a density of 4, adaptive: in `f32` and in `f64`.
 const ADAPTIVE: [[u64; 2]; 2] =
     [[0x53e801981c82d28d, 0xa2586d5a643b019c], [0x45ee3a9b4b7d8a47, 0x2d1ea4d9a4ec2e5a]];
 
@@ -92,7 +92,7 @@ fn textbook_images_stay_what_they_are() {
 /// generator.
 #[test]
 fn importance_images_stay_what_they_are() {
-    let mut scene = scene("report");
+    let mut scene = scene("lab");
     scene.render.antialiasing = 2;
     scene.render.sampling = Sampling::Importance;
     let found = PRECISIONS.map(|precision| digest(&scene, precision));
@@ -102,7 +102,7 @@ fn importance_images_stay_what_they_are() {
 /// Catches points that are interpolated by another rule, or elsewhere.
 #[test]
 fn adaptive_images_stay_what_they_are() {
-    let found = ["room", "report"].map(|name| {
+    let found = ["room", "lab"].map(|name| {
         let mut scene = scene(name);
         (scene.render.antialiasing, scene.render.adaptive) = (4, true);
         PRECISIONS.map(|precision| digest(&scene, precision))

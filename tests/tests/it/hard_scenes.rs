@@ -1,5 +1,5 @@
-//! The scenes that are hard for arithmetic, and the report's at every scale and place, are rendered
-//! right in the precision that is chosen for each.
+//! The scenes that are hard for arithmetic, and the lab report's at every scale and place, are
+//! rendered right in the precision that is chosen for each.
 
 use glam::DVec3;
 use rayweave_contract::Image;
@@ -152,10 +152,10 @@ fn hard_scenes_have_no_wrong_samples() {
     }
 }
 
-/// Lists the report's scene and the fan, in all sizes and places that are tried.
+/// Lists the lab report's scene and the fan, in all sizes and places that are tried.
 fn everywhere() -> Vec<(String, Scene)> {
     let mut all = Vec::new();
-    for name in ["report", "hard/fan"] {
+    for name in ["lab", "hard/fan"] {
         let scene = scenes::named(name);
         for exponent in -4..=6 {
             let scale = 10f64.powi(exponent);

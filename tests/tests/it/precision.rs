@@ -21,9 +21,9 @@ fn seen_from(eye: DVec3, primitives: &[Primitive]) -> Scene {
     scene
 }
 
-/// The report's scene on a sphere of this radius instead of its floor.
+/// The lab report's scene on a sphere of this radius instead of its floor.
 fn on_a_globe(radius: f64) -> Scene {
-    let mut scene = named("report");
+    let mut scene = named("lab");
     let floor = scene.planes.remove(0);
     with(scene, [sphere(floor.point - radius * DVec3::Y, radius).of(floor.material)])
 }
@@ -35,7 +35,7 @@ fn through_a_lens(focal_length: f64, mut scene: Scene) -> Scene {
     scene
 }
 
-/// The report's scene from this distance, through a lens that makes it as large as ever.
+/// The lab report's scene from this distance, through a lens that makes it as large as ever.
 fn from_afar(distance: f64) -> Scene {
     let mut scene = named("hard/telephoto");
     let camera = &mut scene.camera;
@@ -120,7 +120,7 @@ fn the_displacement_and_the_mirrors_decide() {
 #[test]
 fn curved_mirrors_take_digits() {
     let mirrors = |reflections: [f64; 4]| {
-        let mut scene = named("report");
+        let mut scene = named("lab");
         scene.materials.truncate(1);
         scene.materials =
             reflections.map(|reflection| Material { reflection, ..scene.materials[0] }).into();
@@ -173,7 +173,7 @@ fn lights_and_materials_count_by_their_range() {
         for (x, expected) in
             [(1e8, Precision::F32), (1e10, Precision::F64), (1e300, Precision::F64)]
         {
-            let mut scene = named("report");
+            let mut scene = named("lab");
             change(&mut scene, x);
             assert_eq!(chosen(&scene), expected, "{what} of {x:e}");
         }
@@ -193,7 +193,7 @@ fn only_the_chaotic_scene_of_the_repository_chooses_f64() {
 /// the scene, and the reverse.
 #[test]
 fn far_or_large_beside_small_chooses_f64() {
-    let report = named("report");
+    let report = named("lab");
     // All numbers grow alike: `f32` loses nothing.
     assert_eq!(chosen(&enlarged(&report, 1e5)), Precision::F32);
     assert_eq!(chosen(&enlarged(&report, 1e-5)), Precision::F32);
@@ -215,7 +215,7 @@ fn far_or_large_beside_small_chooses_f64() {
 /// Catches a reason that does not name what decides, or is not a number.
 #[test]
 fn the_reason_is_one_line_about_what_decides() {
-    let report = named("report");
+    let report = named("lab");
     for (scene, word) in [
         (&report, "of the image's width"),
         (&moved(&report, DVec3::splat(1e5)), "of the image's width"),
@@ -282,7 +282,7 @@ fn the_chosen_precision_is_enough() {
 /// Catches a rule that chooses `f64` for nothing: these are wrong in `f32`.
 #[test]
 fn f64_is_chosen_for_a_reason() {
-    let report = named("report");
+    let report = named("lab");
     for (what, scene) in [
         ("far", moved(&report, DVec3::splat(1e5))),
         ("on a globe", on_a_globe(1e6)),
@@ -302,7 +302,7 @@ fn f64_is_chosen_for_a_reason() {
 /// the light vanish in `f32`.
 #[test]
 fn a_floor_alone_may_be_minute() {
-    let mut scene = named("report");
+    let mut scene = named("lab");
     scene.spheres.clear();
     scene.triangles.clear();
     scene.cylinders.clear();
@@ -315,7 +315,7 @@ fn a_floor_alone_may_be_minute() {
 #[test]
 fn a_light_may_be_very_far() {
     for distance in [1e6, 1e18, 1e20, 1e30, 1e100] {
-        let mut scene = named("report");
+        let mut scene = named("lab");
         scene.lights[0].position = distance * DVec3::new(-0.5, 1.0, 0.7);
         assert_enough(&format!("a light {distance:e} away"), &scene);
     }
@@ -326,7 +326,7 @@ fn a_light_may_be_very_far() {
 #[test]
 fn a_screen_may_be_very_small_or_large() {
     for scale in [1e-60, 1e-30, 1e-10, 1e10, 1e30, 1e60] {
-        let mut scene = named("report");
+        let mut scene = named("lab");
         scene.camera.focal_length *= scale;
         scene.camera.screen_width *= scale;
         assert_enough(&format!("a screen {scale:e} times as large"), &scene);

@@ -74,7 +74,7 @@ fn each_row_is_of_its_setting() {
 /// its own endpoints.
 #[test]
 fn the_reference_is_the_limit() {
-    let mut scene = scenes::named("report");
+    let mut scene = scenes::named("lab");
     let reference = Reference::new(&scene, SIZE, render).expect("a sound scene");
     let mut last = 0.0;
     for density in [2, 4, 8, 16] {

@@ -14,8 +14,8 @@ use crate::simd::vector::Vector;
 #[derive(Debug)]
 pub(crate) struct Textbook;
 
-/// The report's constant: a closer hit is taken for the surface that the ray comes from. It is a
-/// length in scene units, so it suits scenes of one scale only.
+/// The lab report's constant: a closer hit is taken for the surface that the ray comes from. It is
+/// a length in scene units, so it suits scenes of one scale only.
 const OFFSET: f64 = 1e-3;
 
 impl Family for Textbook {

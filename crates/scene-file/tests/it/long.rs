@@ -9,7 +9,7 @@ const ENTRIES: usize = 10_000;
 
 const LATE: &str = "[material.late]\ncolor = [0, 0, 0]\n";
 
-/// The report's scene and many more entries, whose material is missing.
+/// The lab report's scene and many more entries, whose material is missing.
 fn long() -> String {
     format!("{REPORT_SCENE}{}", entries())
 }

@@ -39,7 +39,7 @@ fn sound(text: &str) -> SceneFile {
     read(text).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The camera of [`everything`], of [`CAMERA`] and of the report's scene.
+/// The camera of [`everything`], of [`CAMERA`] and of the lab report's scene.
 fn camera() -> Camera {
     Camera {
         position: dvec3(0.0, 0.0, 2.0),
@@ -50,12 +50,12 @@ fn camera() -> Camera {
     }
 }
 
-/// The light of [`everything`] and of the report's scene.
+/// The light of [`everything`] and of the lab report's scene.
 fn light() -> Light {
     Light { position: dvec3(-15.0, 10.0, 10.0), color: DVec3::ONE, power: 1.0 }
 }
 
-/// The settings of [`everything`] and of the report's scene, which are the model's defaults.
+/// The settings of [`everything`] and of the lab report's scene, which are the model's defaults.
 fn render() -> RenderSettings {
     let default = RenderSettings::default();
     RenderSettings { background: DVec3::ZERO, max_reflections: 4, antialiasing: 2, ..default }
@@ -206,10 +206,10 @@ fn the_scenes_of_the_project_load() {
         let (flat, round) = (planes.len(), spheres.len());
         [lights.len(), materials.len(), flat, round, triangles.len(), cylinders.len()]
     };
-    assert_eq!(count("report.toml"), [1, 5, 1, 3, 1, 1]);
+    assert_eq!(count("lab.toml"), [1, 5, 1, 3, 1, 1]);
     assert_eq!(count("room.toml"), [2, 10, 3, 4, 2, 1]);
     assert_eq!(count("imbalance.toml")[..2], [6, 5]);
-    assert_eq!(load(&folder.join("report.toml")), Ok(report_scene()));
+    assert_eq!(load(&folder.join("lab.toml")), Ok(report_scene()));
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! `mutex-image`: the report's second way, threads by hand and one lock around the image.
+//! `mutex-image`: the lab report's second way, threads by hand and one lock around the image.
 //!
 //! * **What it decides**: everything beforehand. Thread `i` of `n` gets the `i`-th of `n` equal
 //!   ranges of pixels; a thread that is done early waits for the slowest.

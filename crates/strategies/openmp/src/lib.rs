@@ -1,4 +1,4 @@
-//! `openmp-static`, `openmp-dynamic`, `openmp-guided`: the report's own way, OpenMP's parallel
+//! `openmp-static`, `openmp-dynamic`, `openmp-guided`: the lab report's own way, OpenMP's parallel
 //! loop, with the C compiler's OpenMP and the work in Rust.
 //!
 //! * **What it decides**: `static` everything beforehand: each thread gets one of N equal ranges of

@@ -1,4 +1,4 @@
-//! `rayon-pixels`: a parallel loop over the pixels, as the report's `#pragma omp parallel for`.
+//! `rayon-pixels`: a parallel loop over the pixels, as the lab report's `#pragma omp parallel for`.
 //!
 //! * **What it decides**: only that pixels are independent. rayon splits the range of pixels in
 //!   halves as long as idle threads steal them, so an expensive corner is shared out without a
