@@ -21,14 +21,14 @@ pub struct Arguments {
     /// Scene file [default: the lab report's scene, which is built in]
     scene: Option<PathBuf>,
     /// Strategies to check [default: all]
-    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = strategy_parser())]
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',', value_parser = strategy_parser())]
     strategy: Vec<&'static dyn Strategy>,
     /// Numbers of computing threads [default: all cores for the full size; for several small sizes
     /// 1, 2, 3, all and twice all]
-    #[arg(long, value_name = "N", value_delimiter = ',', value_parser = parse_threads)]
+    #[arg(long, value_name = "N,...", value_delimiter = ',', value_parser = parse_threads)]
     threads: Vec<NonZeroUsize>,
     /// Sides of a tile in pixels [default: 32 for the full size; 1, 7 and 32 for small sizes]
-    #[arg(long, value_name = "N", value_delimiter = ',')]
+    #[arg(long, value_name = "N,...", value_delimiter = ',')]
     tile: Vec<NonZeroU32>,
     /// Write the result as JSON
     #[arg(long, value_name = "FILE")]

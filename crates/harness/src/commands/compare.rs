@@ -35,10 +35,10 @@ pub struct Arguments {
 #[derive(Args)]
 pub struct Options {
     /// Strategies to time [default: all]
-    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = strategy_parser())]
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',', value_parser = strategy_parser())]
     strategy: Vec<&'static dyn Strategy>,
     /// Numbers of computing threads [default: all that the machine and its quota allow]
-    #[arg(long, value_name = "N", value_delimiter = ',', value_parser = parse_threads)]
+    #[arg(long, value_name = "N,...", value_delimiter = ',', value_parser = parse_threads)]
     threads: Vec<NonZeroUsize>,
     #[command(flatten)]
     tile: TileOption,
@@ -58,7 +58,7 @@ pub struct Options {
     csv: Option<PathBuf>,
     /// Compare on several scenes side by side: scene files, or `all` for those in scenes/loads,
     /// which separate the strategies. All scenes share the time limit
-    #[arg(long, value_name = "FILE", value_delimiter = ',')]
+    #[arg(long, value_name = "FILE,...", value_delimiter = ',')]
     scenes: Vec<PathBuf>,
     /// Write the table as Markdown
     #[arg(long, value_name = "FILE")]

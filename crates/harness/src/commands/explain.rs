@@ -24,7 +24,7 @@ pub struct Arguments {
     /// Scene file [default: the lab report's scene, which is built in]
     scene: Option<PathBuf>,
     /// Strategies to explain [default: the recommended one]
-    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = strategy_parser())]
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',', value_parser = strategy_parser())]
     strategy: Vec<&'static dyn Strategy>,
     /// Number of computing threads [default: all that the machine and its quota allow]
     #[arg(long, value_name = "N", value_parser = parse_threads)]

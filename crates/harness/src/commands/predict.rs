@@ -22,7 +22,7 @@ pub struct Arguments {
     /// Scene file [default: the lab report's scene, which is built in]
     scene: Option<PathBuf>,
     /// Strategies to predict; each must start threads [default: all that do]
-    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = strategy_parser())]
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',', value_parser = strategy_parser())]
     strategy: Vec<&'static dyn Strategy>,
     /// Numbers of computing threads, each 1..=1024. A..B is A, B and the powers of two between
     #[arg(
