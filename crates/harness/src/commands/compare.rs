@@ -79,22 +79,22 @@ pub fn run(scene: Option<&Path>, options: &Options) -> Result<Outcome, String> {
     let files = Files::create(&scenes, options)?;
     let baseline = options.baseline.as_deref().map(read_baseline).transpose()?;
     // Load all scenes before the first is measured, to report a mistake in the last one at once.
-    let inputs = scenes.iter().map(|scene| load(scene.as_deref(), options));
-    let inputs = inputs.collect::<Result<Vec<Input>, _>>()?;
+    let loaded = scenes.into_iter().map(|scene| load(scene, options));
+    let loaded = loaded.collect::<Result<Vec<Loaded>, _>>()?;
     if let Some((path, baseline)) = options.baseline.as_deref().zip(baseline.as_ref()) {
-        let subjects = inputs.iter().flat_map(|input| subjects(input, options));
-        let subjects = subjects.collect::<Result<Vec<Subject>, _>>()?;
-        comparable(baseline, &subjects).map_err(|reason| no_baseline(path, &reason))?;
+        let subjects = loaded.iter().flat_map(|loaded| loaded.subjects.clone());
+        comparable(baseline, &subjects.collect::<Vec<_>>())
+            .map_err(|reason| no_baseline(path, &reason))?;
     }
     // These lines are printed below the table of a single scene.
-    let notes = match &inputs[..] {
-        [input] => {
+    let notes = match &loaded[..] {
+        [Loaded { input, .. }] => {
             let skipped = input.skipped_line().map(|line| line + "\n").unwrap_or_default();
             format!("\n{}\n{skipped}", input.arithmetic_line())
         }
         _ => "\n".to_owned(),
     };
-    let (measured, machine, noise) = with_noise(|bar| measure_all(&scenes, &inputs, options, bar));
+    let (measured, machine, noise) = with_noise(|bar| measure_all(&loaded, options, bar));
     let records = match measured {
         Ok(records) => records,
         Err(Unmeasured::Failed(reason)) => return Err(reason),
@@ -105,9 +105,9 @@ pub fn run(scene: Option<&Path>, options: &Options) -> Result<Outcome, String> {
     };
     let mut results = Results::new(machine, noise, records);
     (results.seed, results.precision_goal) = (Protocol::default().seed, options.precision_goal);
-    let measured = |input: &Input| results.results.iter().any(|r| r.subject.scene == input.name);
-    let left_out = inputs.iter().filter(|input| !measured(input));
-    results.not_measured = left_out.map(|input| input.name.clone()).collect();
+    let measured = |name: &String| results.results.iter().any(|r| r.subject.scene == *name);
+    let names = loaded.iter().map(|loaded| &loaded.input.name);
+    results.not_measured = names.filter(|name| !measured(name)).cloned().collect();
     if let Some(baseline) = &baseline {
         results = results.compared_with(baseline);
     }
@@ -175,12 +175,12 @@ impl Files {
 
     fn finish(self, results: &Results) -> Result<(), String> {
         let views = [
-            (self.json, results.json()),
-            (self.csv, results.csv()),
-            (self.markdown, results.markdown()),
+            (self.json, Results::json as fn(&Results) -> String),
+            (self.csv, Results::csv),
+            (self.markdown, Results::markdown),
         ];
         let mut wanted = views.into_iter().filter_map(|(file, view)| Some((file?, view)));
-        wanted.try_for_each(|(file, view)| file.finish(view.as_bytes()))
+        wanted.try_for_each(|(file, view)| file.finish(view(results).as_bytes()))
     }
 }
 
@@ -202,9 +202,19 @@ fn ways(options: &Options) -> &'static [bool] {
     }
 }
 
+/// A scene that can be measured with the options.
+struct Loaded {
+    /// The scene file; the lab report's scene without one.
+    path: Option<PathBuf>,
+    input: Input,
+    tile: NonZeroU32,
+    /// One for each way to share samples.
+    subjects: Vec<Subject>,
+}
+
 /// Loads a scene and checks that it can be measured with these options.
-fn load(scene: Option<&Path>, options: &Options) -> Result<Input, String> {
-    let ways = ways(options);
+fn load(path: Option<PathBuf>, options: &Options) -> Result<Loaded, String> {
+    let (scene, ways) = (path.as_deref(), ways(options));
     let input = Input::load_sharing(scene, &options.scene_options, ways[0])?;
     let settings = &input.scene.render;
     if ways.len() > 1 && (!settings.has_lattice() || settings.adaptive) {
@@ -221,8 +231,9 @@ fn load(scene: Option<&Path>, options: &Options) -> Result<Input, String> {
         ));
     }
     input.image()?;
-    options.tile.of(input.width, input.height)?;
-    Ok(input)
+    let tile = options.tile.of(input.width, input.height)?;
+    let subjects = ways.iter().map(|&share_samples| subject(&input, share_samples, tile)).collect();
+    Ok(Loaded { path, input, tile, subjects })
 }
 
 /// The reason why a scene has no figures.
@@ -239,20 +250,19 @@ impl From<String> for Unmeasured {
 
 /// Measures on one scene after the other until an interruption. The first scene is always measured.
 fn measure_all(
-    scenes: &[Option<PathBuf>],
-    inputs: &[Input],
+    scenes: &[Loaded],
     options: &Options,
     bar: &Share,
 ) -> Result<Vec<Record>, Unmeasured> {
     let (mut all, interrupt) = (Vec::new(), Interrupt::watch());
-    for (number, (scene, input)) in scenes.iter().zip(inputs).enumerate() {
+    for (number, scene) in scenes.iter().enumerate() {
         if !all.is_empty() && interrupt.happened() {
             break;
         }
         let show = |fraction: f64, message: String| {
             bar.show((number as f64 + fraction) / scenes.len() as f64, message);
         };
-        match measure(scene.as_deref(), input, options, scenes.len(), &interrupt, show) {
+        match measure(scene, options, scenes.len(), &interrupt, show) {
             Ok(records) => all.extend(records),
             // Show the scenes that were measured.
             Err(Unmeasured::Interrupted(_)) if !all.is_empty() => break,
@@ -264,21 +274,18 @@ fn measure_all(
 
 /// Measures on one of `scenes` scenes. Returns a record for each row and each way to share samples.
 fn measure(
-    scene: Option<&Path>,
-    input: &Input,
+    Loaded { path, input, tile, subjects }: &Loaded,
     options: &Options,
     scenes: usize,
     interrupt: &Interrupt,
     show: impl Fn(f64, String),
 ) -> Result<Vec<Record>, Unmeasured> {
-    let tile = options.tile.of(input.width, input.height)?;
-    let subjects = subjects(input, options).collect::<Result<Vec<Subject>, _>>()?;
     let executors = ways(options).iter().map(|&way| {
         let share_samples = if way { SharingOption::On } else { SharingOption::Off };
         let job = Job {
-            scene: scene.map(Into::into),
+            scene: path.as_ref().map(Into::into),
             options: SceneOptions { share_samples, ..options.scene_options },
-            tile,
+            tile: *tile,
             strategy: String::new(),
             threads: NonZeroUsize::MIN,
             count_rays: false,
@@ -289,7 +296,7 @@ fn measure(
     let mut executors: Vec<&mut dyn Executor> =
         executors.iter_mut().map(|executor| executor as &mut dyn Executor).collect();
 
-    let costs = (!options.scenes.is_empty()).then(|| tile_costs(input, tile)).transpose()?;
+    let costs = (!options.scenes.is_empty()).then(|| tile_costs(input, *tile)).transpose()?;
     let monitor = NoiseMonitor::start();
     let comparisons = protocol(options, subjects.len(), scenes).run_together(
         rayweave_registry::reference(),
@@ -353,31 +360,26 @@ fn protocol(options: &Options, ways: usize, scenes: usize) -> Protocol {
     }
 }
 
-/// Returns the subjects of a scene, one for each way to share samples.
-fn subjects<'a>(
-    input: &'a Input,
-    options: &'a Options,
-) -> impl Iterator<Item = Result<Subject, String>> + 'a {
+/// Returns the subject of a scene with this way to share samples.
+fn subject(input: &Input, share_samples: bool, tile: NonZeroU32) -> Subject {
     let Arithmetic { formulas, precision } = input.scene.render.arithmetic;
     let Execution { lanes, acceleration, .. } = input.execution;
     let accel = match acceleration {
         Acceleration::Auto => "auto",
         Acceleration::None => "none",
     };
-    ways(options).iter().map(move |&share_samples| {
-        Ok(Subject {
-            scene: input.name.clone(),
-            width: input.width,
-            height: input.height,
-            antialiasing: input.scene.render.antialiasing,
-            sampling: input.scene.render.sampling.to_string(),
-            adaptive: input.scene.render.adaptive,
-            formulas: formulas.to_string(),
-            precision: precision.to_string(),
-            lanes: lanes.count(precision),
-            share_samples,
-            accel: accel.to_owned(),
-            tile: options.tile.of(input.width, input.height)?.get(),
-        })
-    })
+    Subject {
+        scene: input.name.clone(),
+        width: input.width,
+        height: input.height,
+        antialiasing: input.scene.render.antialiasing,
+        sampling: input.scene.render.sampling.to_string(),
+        adaptive: input.scene.render.adaptive,
+        formulas: formulas.to_string(),
+        precision: precision.to_string(),
+        lanes: lanes.count(precision),
+        share_samples,
+        accel: accel.to_owned(),
+        tile: tile.get(),
+    }
 }

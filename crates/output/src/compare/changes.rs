@@ -110,10 +110,10 @@ fn changes(then: &[Record], now: &[Record]) -> Vec<Change> {
     let (reference_now, reference_then) = (reference(now), reference(then));
     let change = |(place, record): (usize, &Record)| {
         let row = &record.measurement;
-        let alike = |other: &&Measurement| {
+        let alike = |other: &Measurement| {
             (&other.strategy, other.threads, other.control) == (&row.strategy, row.threads, false)
         };
-        let earlier = then.iter().filter(|record| alike(&&record.measurement)).map(times).next();
+        let earlier = then.iter().find(|record| alike(&record.measurement)).map(times);
         let (now, then) = (times(record), earlier.unwrap_or_default());
         // Times of 0 have no ratio.
         let finite = |ratio: &Interval| ratio.low.is_finite() && ratio.high.is_finite();
