@@ -51,8 +51,8 @@ pub struct SimulatedRender {
 /// Simulates a rendering by `threads` threads, or 1 if it is 0. `pieces` are the nanoseconds of
 /// each piece, in the order of their numbers; if a piece is a band there is one for each thread.
 ///
-/// Of events at the same time that of the lower thread comes first, so that the same input gives
-/// the same result.
+/// When two events have the same time, that of the lower thread comes first, so that the same input
+/// gives the same result.
 #[must_use]
 pub fn simulate(
     policy: Policy,

@@ -156,8 +156,8 @@ impl<S: Scalar> Primitives<S> {
         }
     }
 
-    /// Returns the closest hit of the rays of `wanted`. Of hits at the same distance it is that of
-    /// the lowest number.
+    /// Returns the closest hit of the rays of `wanted`. If hits have the same distance, it is that
+    /// of the lowest number.
     ///
     /// If all rays come from one point, `from` holds the cones seen from it and the distance from
     /// it at which the rays start. The directions have unit length then.

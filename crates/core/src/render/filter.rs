@@ -176,7 +176,7 @@ fn rank1_generator(count: u32) -> u32 {
         points.min().unwrap_or(0)
     };
     let one_a_row = |g: &u32| greatest_common_divisor(*g, count) == 1;
-    // Generators above the middle give mirror images. Of equally good ones, takes the first.
+    // Generators above the middle give mirror images. Takes the first of equally good ones.
     (1..=count / 2).filter(one_a_row).rev().max_by_key(|&g| distance(g)).unwrap_or(1)
 }
 
