@@ -34,14 +34,14 @@ fn strategies(criterion: &mut Criterion) {
         let mut image = Image::new(load.width, load.height).expect("a small image");
         let mut expected = None;
         for strategy in rayweave_registry::available() {
-            let alone = strategy.threads() == Threads::None;
+            let alone = strategy.threads == Threads::None;
             for &threads in if alone { &[1][..] } else { &counts } {
                 let plan = Plan { threads: NonZeroUsize::new(threads).expect("not 0"), tile: TILE };
                 let mut renderer = strategy.prepare(plan).expect("the strategy is available");
                 // A pixel that a strategy does not write is not the one of the strategy before it.
                 image.fill([f32::NAN; 3]);
                 let mut ran = false;
-                group.bench_function(BenchmarkId::new(strategy.name(), threads), |bencher| {
+                group.bench_function(BenchmarkId::new(strategy.name, threads), |bencher| {
                     ran = true;
                     bencher.iter(|| {
                         renderer.render(&*load.work, &mut image).expect("the work does not fail");
@@ -50,7 +50,7 @@ fn strategies(criterion: &mut Criterion) {
                 // A timed image is checked, outside of the timing; a filter may have left it out.
                 if ran {
                     let expected = *expected.get_or_insert_with(|| reference_digest(&load));
-                    assert_eq!(image.digest(), expected, "{}: another image", strategy.name());
+                    assert_eq!(image.digest(), expected, "{}: another image", strategy.name);
                 }
             }
         }

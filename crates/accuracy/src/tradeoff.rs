@@ -28,7 +28,7 @@ pub struct TradeoffExperiment<'a> {
     /// The width and height of the images in pixels.
     pub size: (u32, u32),
     /// The strategy that renders the timed images, on the caller's thread.
-    pub strategy: &'a dyn Strategy,
+    pub strategy: Strategy<'a>,
     /// The number of rounds and the time budget.
     pub protocol: Protocol,
 }
@@ -199,7 +199,7 @@ pub struct Timed {
 ///
 /// An invalid scene, an impossible image size, and errors of the strategy.
 pub fn timed(
-    strategy: &dyn Strategy,
+    strategy: Strategy<'_>,
     setting: &Setting,
     scene: &Scene,
     size: (u32, u32),

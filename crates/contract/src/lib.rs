@@ -8,7 +8,7 @@
 //! This crate starts no thread, opens no file and reads no clock.
 //!
 //! ```
-//! use rayweave_contract::{Image, Renderer, StrategyError, Tile, Work, render_tile};
+//! use rayweave_contract::{Image, Renderer, Tile, Work, render_tile};
 //!
 //! /// A gradient: the work.
 //! struct Gradient;
@@ -24,18 +24,14 @@
 //!     }
 //! }
 //!
-//! /// One tile after the other: the simplest renderer.
-//! struct OneByOne;
-//!
-//! impl Renderer for OneByOne {
-//!     fn render(&mut self, work: &dyn Work, image: &mut Image) -> Result<(), StrategyError> {
-//!         let tiles = image.tiles(std::num::NonZeroU32::new(2).unwrap());
-//!         tiles.into_iter().try_for_each(|mut tile| render_tile("one-by-one", work, &mut tile))
-//!     }
-//! }
+//! // One tile after the other: the simplest renderer.
+//! let mut one_by_one = Renderer::new("one-by-one", |work, image| {
+//!     let mut tiles = image.tiles(std::num::NonZeroU32::new(2).unwrap());
+//!     tiles.iter_mut().try_for_each(|tile| render_tile(work, tile))
+//! });
 //!
 //! let mut image = Image::new(3, 2)?;
-//! OneByOne.render(&Gradient, &mut image)?;
+//! one_by_one.render(&Gradient, &mut image)?;
 //! assert_eq!(image.pixels()[5], [2.0, 1.0, 0.0]);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -48,6 +44,9 @@ mod work;
 
 pub use image::{Digest, Image, ImageError, MAX_PIXELS, ParseDigestError};
 pub use policy::{Granularity, Output, Policy, Scheduling, Threads};
-pub use strategy::{Plan, Renderer, Strategy, StrategyError, panic_message, render_tile};
+pub use strategy::{
+    Plan, Prepare, RenderError, RenderFn, Renderer, Strategy, StrategyError, panic_message,
+    render_tile, renderer,
+};
 pub use tile::{Rect, Rgb, Tile};
 pub use work::Work;

@@ -9,11 +9,8 @@ use std::num::NonZeroUsize;
 /// use rayweave_contract::{Granularity, Output, Policy, Scheduling};
 ///
 /// // OpenMP's `schedule(dynamic, 4)` over rows that are written in place.
-/// let policy = Policy {
-///     granularity: Granularity::Row,
-///     scheduling: Scheduling::Dynamic { chunk: 4 },
-///     output: Output::InPlace,
-/// };
+/// let scheduling = Scheduling::Dynamic { chunk: 4 };
+/// let policy = Policy::new(Granularity::Row, scheduling, Output::InPlace);
 /// assert_eq!(policy.scheduling.to_string(), "dynamic,4");
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,6 +21,14 @@ pub struct Policy {
     pub scheduling: Scheduling,
     /// The way of a finished piece into the image.
     pub output: Output,
+}
+
+impl Policy {
+    /// Returns the policy with these decisions.
+    #[must_use]
+    pub const fn new(granularity: Granularity, scheduling: Scheduling, output: Output) -> Self {
+        Self { granularity, scheduling, output }
+    }
 }
 
 /// The piece that a thread computes at once.

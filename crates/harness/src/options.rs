@@ -220,30 +220,30 @@ pub fn checked_tile(tile: NonZeroU32, width: u32, height: u32) -> Result<NonZero
 }
 
 /// Returns clap's parser of strategy names, which suggests a similar name after a mistake.
-pub fn strategy_parser() -> impl TypedValueParser<Value = &'static dyn Strategy> {
-    let names = STRATEGIES.iter().map(|strategy| strategy.name());
+pub fn strategy_parser() -> impl TypedValueParser<Value = Strategy<'static>> {
+    let names = STRATEGIES.iter().map(|strategy| strategy.name);
     PossibleValuesParser::new(names).try_map(|name| {
         let strategy =
             rayweave_registry::find(&name).ok_or_else(|| "there is no such strategy".to_owned())?;
         strategy
-            .unavailable()
+            .unavailable
             .map_or(Ok(strategy), |reason| Err(format!("unavailable here: {reason}")))
     })
 }
 
 /// Returns the requested strategies, each once, or else all that are available here.
-pub fn chosen(asked_for: &[&'static dyn Strategy]) -> Vec<&'static dyn Strategy> {
+pub fn chosen(asked_for: &[Strategy<'static>]) -> Vec<Strategy<'static>> {
     if asked_for.is_empty() {
         rayweave_registry::available()
     } else {
-        distinct(asked_for, |s| s.name())
+        distinct(asked_for, |s| s.name)
     }
 }
 
 /// Returns a line on strategies that are unavailable here, or nothing if none of them is missing.
-pub fn left_out_line(asked_for: &[&'static dyn Strategy]) -> String {
-    let unavailable = STRATEGIES.iter().filter(|strategy| strategy.unavailable().is_some());
-    let names: Vec<&str> = unavailable.map(|strategy| strategy.name()).collect();
+pub fn left_out_line(asked_for: &[Strategy<'static>]) -> String {
+    let unavailable = STRATEGIES.iter().filter(|strategy| strategy.unavailable.is_some());
+    let names: Vec<&str> = unavailable.map(|strategy| strategy.name).collect();
     if names.is_empty() || !asked_for.is_empty() {
         return String::new();
     }

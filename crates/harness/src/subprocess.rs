@@ -66,7 +66,7 @@ impl SubprocessExecutor {
 
     fn ask(&mut self, entry: &Entry<'_>, count_rays: bool) -> Answer {
         let begin = Instant::now();
-        let strategy = entry.strategy.name().to_owned();
+        let strategy = entry.strategy.name.to_owned();
         let job = Job { strategy, threads: entry.threads, count_rays, ..self.job.clone() };
         let job = serde_json::to_string(&job).map_err(|e| e.to_string())?;
         let patience = self.slowest.map(|slowest| (slowest * PATIENCE).max(LEAST_PATIENCE));

@@ -14,7 +14,7 @@ fn strategies_lists_the_registry_in_its_order() {
         .filter(|line| !line.starts_with(' '))
         .filter_map(|line| line.split(' ').next())
         .collect();
-    let expected: Vec<&str> = rayweave_registry::STRATEGIES.iter().map(|s| s.name()).collect();
+    let expected: Vec<&str> = rayweave_registry::STRATEGIES.iter().map(|s| s.name).collect();
     assert_eq!(names, expected);
 }
 
@@ -34,7 +34,7 @@ fn render_gives_the_same_file_with_every_strategy() {
     let folder = folder();
     let mut files = Vec::new();
     for strategy in rayweave_registry::available() {
-        let name = strategy.name();
+        let name = strategy.name;
         for format in ["ppm", "exr", "png"] {
             let arguments =
                 format!("render --size 33x21 --strategy {name} --threads 3 -o {name}.{format}");
@@ -228,7 +228,7 @@ fn each_malformed_scene_gives_one_message_and_no_image() {
 #[test]
 fn openmp_has_the_threads_asked_for_or_none() {
     let strategy = rayweave_registry::find("openmp-static").expect("a strategy");
-    if strategy.unavailable().is_some() {
+    if strategy.unavailable.is_some() {
         return;
     }
     let folder = folder();
@@ -273,9 +273,9 @@ fn threads_that_cannot_be_started_are_an_error_that_names_the_strategy() {
     };
     let parallel = rayweave_registry::available()
         .into_iter()
-        .filter(|strategy| strategy.threads() != rayweave_contract::Threads::None);
+        .filter(|strategy| strategy.threads != rayweave_contract::Threads::None);
     for strategy in parallel {
-        let name = strategy.name();
+        let name = strategy.name;
         // The image is large enough to keep a dozen threads busy until the next one is started.
         let size = "--size 200x200 --threads 1000";
         let message = run(&format!("render {size} --strategy {name} -o a.png")).expect_refusal();
@@ -285,7 +285,7 @@ fn threads_that_cannot_be_started_are_an_error_that_names_the_strategy() {
         );
     }
     // In a check it is a finding, and the check goes on.
-    let name = rayweave_registry::recommended().name();
+    let name = rayweave_registry::recommended().name;
     let check = run(&format!("check --size 32x32 --threads 1000 --strategy {name}"));
     assert_eq!(check.status, 1, "{}", check.stderr);
     assert!(check.stdout.contains("cannot start 1000 threads"), "{}", check.stdout);

@@ -200,7 +200,7 @@ fn compare_counts_the_rays_of_the_tiles_that_each_strategy_cuts() {
     ] {
         let (_, object) = run(options);
         for strategy in rayweave_registry::available() {
-            assert_eq!(rays(&object, strategy.name()), (24 * 16 * a_pixel, 0), "{options}");
+            assert_eq!(rays(&object, strategy.name), (24 * 16 * a_pixel, 0), "{options}");
         }
     }
 }
@@ -274,7 +274,7 @@ fn compare_measures_both_ways_to_share_samples() {
 #[test]
 fn without_a_command_it_compares() {
     let folder = folder();
-    let strategy = rayweave_registry::recommended().name();
+    let strategy = rayweave_registry::recommended().name;
     let table = rayweave(
         folder.path(),
         &format!("--size 16x16 --threads 2 --strategy {strategy} --time-limit 1"),

@@ -13,7 +13,7 @@ const CAUSES: [&str; 6] =
 fn explain_writes_what_it_measured_of_every_strategy() {
     let folder = folder();
     let names: Vec<&str> =
-        rayweave_registry::available().iter().map(|strategy| strategy.name()).collect();
+        rayweave_registry::available().iter().map(|strategy| strategy.name).collect();
     let arguments = format!(
         "explain --size 40x30 --threads 2 --tile 8 --time-limit 2 --strategy {} \
          --trace a.trace.json --pictures drawn",
@@ -63,7 +63,7 @@ fn explain_writes_what_it_measured_of_every_strategy() {
 #[test]
 fn without_a_strategy_the_recommended_one_is_explained() {
     let text = rayweave(folder().path(), "explain --size 16x16").expect_success();
-    let name = rayweave_registry::recommended().name();
+    let name = rayweave_registry::recommended().name;
     assert_eq!(text.matches("explained: ").count(), 1, "{text}");
     assert!(text.contains(&format!("\n{name} on ")), "{text}");
 }

@@ -18,7 +18,7 @@ fn is_positive(value: &Value) -> bool {
 #[test]
 fn overhead_has_a_row_a_strategy() {
     let folder = folder();
-    let strategies = ["sequential", rayweave_registry::recommended().name()];
+    let strategies = ["sequential", rayweave_registry::recommended().name];
     let arguments =
         format!("overhead --strategy {} --threads 2 --time-limit 1", strategies.join(","));
     let (table, object) = rayweave_json(folder.path(), &arguments);
@@ -49,7 +49,7 @@ fn overhead_has_a_row_a_strategy() {
 #[test]
 fn predict_goes_beyond_the_threads_that_are_here() {
     let folder = folder();
-    let name = rayweave_registry::recommended().name();
+    let name = rayweave_registry::recommended().name;
     let arguments = format!(
         "predict {} --size 40x30 --tile 4 --time-limit 2 --antialiasing 0 --threads 1..8,100 \
          --strategy {name} --svg a.svg",
@@ -97,7 +97,7 @@ fn predict_takes_every_strategy_that_starts_threads() {
     let folder = folder();
     let arguments = "predict --size 12x9 --time-limit 2 --antialiasing 1 --threads 1,3";
     let (_, object) = rayweave_json(folder.path(), arguments);
-    let parallel = rayweave_registry::STRATEGIES.iter().filter(|s| s.threads() != Threads::None);
+    let parallel = rayweave_registry::STRATEGIES.iter().filter(|s| s.threads != Threads::None);
     let unavailable = object["unavailable"].as_array().expect("a list").len();
     assert_eq!(results(&object).len(), 2 * (parallel.count() - unavailable));
     assert!(results(&object).iter().all(|row| is_positive(&row["predicted"])));

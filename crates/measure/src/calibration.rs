@@ -24,8 +24,8 @@ const STOLEN: (u32, f64) = (64, 10e3);
 ///
 /// The reference, which steps are timed with, or one of the strategies fails, with this message.
 pub fn calibrate(
-    reference: &dyn Strategy,
-    strategies: &[&dyn Strategy],
+    reference: Strategy<'_>,
+    strategies: &[Strategy<'_>],
     threads: NonZeroUsize,
     mut progress: impl FnMut(f64),
 ) -> Result<Vec<Overheads>, String> {
@@ -36,11 +36,11 @@ pub fn calibrate(
         for (&strategy, rounds) in strategies.iter().zip(&mut rounds) {
             let mut one = of_pixels(strategy, NonZeroUsize::MIN)?;
             let mut all = of_pixels(strategy, threads)?;
-            rounds.push(workloads.time(&mut *one, &mut *all)?);
+            rounds.push(workloads.time(&mut one, &mut all)?);
         }
     }
-    let of = |(strategy, rounds): (&&dyn Strategy, &Vec<Times>)| {
-        overheads(strategy.policy(), threads.get(), &Times::least_disturbed(rounds))
+    let of = |(strategy, rounds): (&Strategy<'_>, &Vec<Times>)| {
+        overheads(strategy.policy, threads.get(), &Times::least_disturbed(rounds))
     };
     Ok(strategies.iter().zip(&rounds).map(of).collect())
 }
@@ -79,7 +79,7 @@ impl Workloads {
         })
     }
 
-    fn time(&mut self, one: &mut dyn Renderer, all: &mut dyn Renderer) -> Result<Times, String> {
+    fn time(&mut self, one: &mut Renderer, all: &mut Renderer) -> Result<Times, String> {
         Ok(Times {
             single: self.single.time(one)?,
             dispatch_one: self.probe.time(one)?,

@@ -39,9 +39,9 @@ pub struct CheckCase<'a> {
 #[derive(Clone, Copy)]
 pub struct Check<'a> {
     /// The strategy that gives the right image.
-    pub reference: &'a dyn Strategy,
+    pub reference: Strategy<'a>,
     /// The strategies to check; the reference may be among them.
-    pub strategies: &'a [&'a dyn Strategy],
+    pub strategies: &'a [Strategy<'a>],
     /// The works to render.
     pub cases: &'a [CheckCase<'a>],
     /// The numbers of computing threads.
@@ -143,7 +143,7 @@ impl<'a> Check<'a> {
             pairs.push((case, self.reference_image(case)?));
         }
         let settings =
-            |strategy: &&dyn Strategy| self.threads_of(*strategy).len() * self.tiles.len();
+            |strategy: &Strategy<'_>| self.threads_of(*strategy).len() * self.tiles.len();
         let total = self.strategies.iter().map(settings).sum::<usize>() * pairs.len() * REPETITIONS;
 
         let verdict = Verdict { checked: vec![self.checked()], compared: 0, findings: Vec::new() };
@@ -162,7 +162,7 @@ impl<'a> Check<'a> {
 
     fn checked(&self) -> Checked {
         Checked {
-            strategies: self.strategies.iter().map(|strategy| strategy.name()).collect(),
+            strategies: self.strategies.iter().map(|strategy| strategy.name).collect(),
             images: self
                 .cases
                 .iter()
@@ -178,8 +178,8 @@ impl<'a> Check<'a> {
     }
 
     /// Returns the numbers of threads to check `strategy` with.
-    fn threads_of(&self, strategy: &dyn Strategy) -> &'a [NonZeroUsize] {
-        match strategy.threads() {
+    fn threads_of(&self, strategy: Strategy<'_>) -> &'a [NonZeroUsize] {
+        match strategy.threads {
             Threads::None => &[NonZeroUsize::MIN],
             Threads::Pool | Threads::PerRender => self.threads,
         }
@@ -209,12 +209,7 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    fn threads_are_right(
-        &mut self,
-        strategy: &dyn Strategy,
-        plan: Plan,
-        timeout: Duration,
-    ) -> bool {
+    fn threads_are_right(&mut self, strategy: Strategy<'_>, plan: Plan, timeout: Duration) -> bool {
         let rendezvous = Rendezvous::of(plan);
         let fault = match rendezvous.computing_threads(strategy, timeout) {
             Ok(found) if found == plan.threads.get() => return true,
@@ -232,7 +227,7 @@ impl Run<'_> {
         false
     }
 
-    fn render_all(&mut self, strategy: &dyn Strategy, plan: Plan) {
+    fn render_all(&mut self, strategy: Strategy<'_>, plan: Plan) {
         let mut renderer = match catch_panic(|| strategy.prepare(plan)) {
             Ok(renderer) => renderer,
             Err(message) => {
@@ -243,14 +238,13 @@ impl Run<'_> {
         for (case, expected) in self.pairs {
             for repetition in 0..REPETITIONS {
                 (self.progress)(CheckProgress {
-                    strategy: strategy.name(),
+                    strategy: strategy.name,
                     threads: plan.threads.get(),
                     done: self.done + repetition,
                     total: self.total,
                 });
                 self.verdict.compared += 1;
-                let faults =
-                    render_and_compare(&mut *renderer, plan.threads, &*case.work, expected);
+                let faults = render_and_compare(&mut renderer, plan.threads, &*case.work, expected);
                 if faults.is_empty() {
                     continue;
                 }
@@ -273,19 +267,19 @@ impl Run<'_> {
 
     fn found(
         &mut self,
-        strategy: &dyn Strategy,
+        strategy: Strategy<'_>,
         threads: NonZeroUsize,
         render: Option<CheckedRender>,
         fault: Fault,
     ) {
-        let (strategy, threads) = (strategy.name(), threads.get());
+        let (strategy, threads) = (strategy.name, threads.get());
         self.verdict.findings.push(Finding { strategy, threads, render, fault });
     }
 }
 
 /// Renders into an image filled with the sentinel and returns the faults.
 fn render_and_compare(
-    renderer: &mut dyn Renderer,
+    renderer: &mut Renderer,
     threads: NonZeroUsize,
     work: &dyn Work,
     expected: &Image,

@@ -39,7 +39,7 @@ use thiserror::Error;
 #[derive(Clone, Copy)]
 pub struct Entry<'a> {
     /// The strategy.
-    pub strategy: &'a dyn Strategy,
+    pub strategy: Strategy<'a>,
     /// The number of computing threads.
     pub threads: NonZeroUsize,
 }
@@ -148,7 +148,7 @@ impl Protocol {
     /// There is no reference image, or it was interrupted too early.
     pub fn run(
         &self,
-        reference: &dyn Strategy,
+        reference: Strategy<'_>,
         entries: &[Entry<'_>],
         executor: &mut dyn Executor,
         progress: impl FnMut(CompareProgress),
@@ -166,14 +166,14 @@ impl Protocol {
     /// There is no reference image, or it was interrupted too early.
     pub fn run_together(
         &self,
-        reference: &dyn Strategy,
+        reference: Strategy<'_>,
         entries: &[Entry<'_>],
         executors: &mut [&mut dyn Executor],
         mut progress: impl FnMut(CompareProgress),
     ) -> Result<Vec<Comparison>, CompareError> {
         let Some(first) = executors.first_mut() else { return Ok(Vec::new()) };
         let base = Entry { strategy: reference, threads: NonZeroUsize::MIN };
-        let contenders = entries.iter().filter(|entry| entry.strategy.name() != reference.name());
+        let contenders = entries.iter().filter(|entry| entry.strategy.name != reference.name);
         let entries: Vec<Entry<'_>> = [base, base].into_iter().chain(contenders.copied()).collect();
         // The reference is the first row, its control the second.
         let new_row = |(place, entry): (usize, &Entry<'_>)| {
@@ -212,7 +212,7 @@ impl Protocol {
                 continue;
             }
             progress(CompareProgress {
-                strategy: entry.strategy.name(),
+                strategy: entry.strategy.name,
                 threads: row.threads,
                 rounds: slot.round.unwrap_or(0),
                 fraction: slot.fraction,

@@ -72,7 +72,7 @@ impl Rendezvous {
     /// The strategy failed, or there is no image with enough tiles.
     pub fn computing_threads(
         &self,
-        strategy: &dyn Strategy,
+        strategy: Strategy<'_>,
         timeout: Duration,
     ) -> Result<usize, CountError> {
         let mut image = Image::new(self.width, self.height)?;

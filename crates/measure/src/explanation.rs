@@ -32,7 +32,7 @@ pub struct ExplainExperiment<'a> {
     /// The side of a tile, in pixels.
     pub tile: NonZeroU32,
     /// The strategy that defines zero loss, on one thread.
-    pub reference: &'a dyn Strategy,
+    pub reference: Strategy<'a>,
     /// The number of rounds and the time for them.
     pub protocol: Protocol,
 }
@@ -115,7 +115,7 @@ impl ExplainedStrategy {
 
 /// The renderings of a strategy with a number of threads, recorded or not.
 struct Series<'a> {
-    strategy: &'a dyn Strategy,
+    strategy: Strategy<'a>,
     threads: NonZeroUsize,
     recording: Recording,
     /// The number of pieces of a thread that a recorder has memory for.
@@ -162,7 +162,7 @@ impl ExplainExperiment<'_> {
     /// A strategy fails, or gives another image than the reference.
     pub fn run(
         &self,
-        strategies: &[&dyn Strategy],
+        strategies: &[Strategy<'_>],
         threads: NonZeroUsize,
         mut progress: impl FnMut(f64),
     ) -> Result<Explanation, ExplainError> {
@@ -174,7 +174,7 @@ impl ExplainExperiment<'_> {
         ];
         let mut places = Vec::with_capacity(strategies.len());
         for &strategy in strategies {
-            let threads = strategy.threads().computing_threads(threads);
+            let threads = strategy.threads.computing_threads(threads);
             let mut add = |threads, recording| {
                 series.push(Series::new(strategy, threads, recording));
                 series.len() - 1
@@ -197,11 +197,11 @@ impl ExplainExperiment<'_> {
             series.render(self, cost, &mut image, slot.round.is_some())?;
             let found = image.digest();
             if *digest.get_or_insert(found) != found {
-                return Err(ExplainError::Different { strategy: series.strategy.name() });
+                return Err(ExplainError::Different { strategy: series.strategy.name });
             }
         }
         Ok(Explanation {
-            reference: self.reference.name(),
+            reference: self.reference.name,
             reference_ns: series[0].shortest_ns(),
             rows: places.iter().map(|places| row(&mut series, places, cost)).collect(),
             digest: digest.unwrap_or_else(|| image.digest()),
@@ -224,7 +224,7 @@ fn row(
         [1, alone, recorded].map(|place| series[place].breakdown(cost));
     let over_plain = ratio_interval(&series[recorded].wall_ns, &series[plain].wall_ns);
     ExplainedStrategy {
-        strategy: series[plain].strategy.name(),
+        strategy: series[plain].strategy.name,
         threads,
         wall_ns,
         lost_ns: threads as f64 * wall_ns - series[0].shortest_ns(),
@@ -240,7 +240,7 @@ fn row(
 }
 
 impl<'a> Series<'a> {
-    fn new(strategy: &'a dyn Strategy, threads: NonZeroUsize, recording: Recording) -> Self {
+    fn new(strategy: Strategy<'a>, threads: NonZeroUsize, recording: Recording) -> Self {
         Self { strategy, threads, recording, room: 0, wall_ns: Vec::new(), quickest: None }
     }
 

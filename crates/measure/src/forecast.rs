@@ -37,9 +37,9 @@ pub struct Question<'a> {
     /// The side of a tile, in pixels.
     pub tile: NonZeroU32,
     /// The strategy that speed-ups are relative to.
-    pub reference: &'a dyn Strategy,
+    pub reference: Strategy<'a>,
     /// The strategies; those that start no threads are left out.
-    pub strategies: &'a [&'a dyn Strategy],
+    pub strategies: &'a [Strategy<'a>],
     /// The numbers of threads, in ascending order.
     pub threads: &'a [NonZeroUsize],
     /// The number of threads that can be measured here.
@@ -146,7 +146,7 @@ impl Question<'_> {
     pub fn answer(&self, mut progress: impl FnMut(Stage, f64)) -> Result<Forecast, ForecastError> {
         let mut unavailable = Vec::new();
         let mut strategies = Vec::new();
-        for &strategy in self.strategies.iter().filter(|s| s.threads() != Threads::None) {
+        for &strategy in self.strategies.iter().filter(|s| s.threads != Threads::None) {
             match of_pixels(strategy, NonZeroUsize::MIN) {
                 Ok(_) => strategies.push(strategy),
                 Err(reason) => unavailable.push(reason),
@@ -166,16 +166,20 @@ impl Question<'_> {
         let several: Vec<NonZeroUsize> =
             together.copied().filter(|threads| threads.get() > 1).collect();
         let independent = Independent::default();
+        let beside_others = independent.strategy();
         let kinds: Vec<Granularity> =
-            strategies.iter().map(|strategy| strategy.policy().granularity).collect();
+            strategies.iter().map(|strategy| strategy.policy.granularity).collect();
         let pieces: Vec<OneByOne> =
             Cut::for_pieces(&kinds).into_iter().map(OneByOne::new).collect();
 
         let timed = strategies
             .iter()
             .flat_map(|&strategy| here.iter().map(move |&threads| Entry { strategy, threads }));
-        let beside = several.iter().map(|&threads| Entry { strategy: &independent, threads });
-        let alone = pieces.iter().map(|strategy| Entry { strategy, threads: NonZeroUsize::MIN });
+        let beside = several.iter().map(|&threads| Entry { strategy: beside_others, threads });
+        let alone = pieces.iter().map(|one_by_one| Entry {
+            strategy: one_by_one.strategy(),
+            threads: NonZeroUsize::MIN,
+        });
         let entries: Vec<Entry<'_>> = timed.chain(beside).chain(alone).collect();
         let mut executor = InProcessExecutor::new(self.work, self.size.0, self.size.1, self.tile)?;
         let comparison = self.protocol.run(self.reference, &entries, &mut executor, |at| {
@@ -194,17 +198,17 @@ impl Question<'_> {
         let reference_ns = comparison.rows[0].samples_ns.clone();
         let slowdown_of = |threads: &NonZeroUsize| {
             let threads = threads.get();
-            find(&comparison, independent.name(), threads)?.median_ns?;
+            find(&comparison, beside_others.name, threads)?.median_ns?;
             Some(Slowdown { threads, factor: independent.slowdown(threads, &reference_ns)? })
         };
         let slowdowns: Vec<Slowdown> = several.iter().filter_map(slowdown_of).collect();
         let speedup =
-            |pieces: &OneByOne| Some(find(&comparison, pieces.name(), 1)?.speedup?.median);
+            |pieces: &OneByOne| Some(find(&comparison, pieces.strategy().name, 1)?.speedup?.median);
         let measured: Vec<_> =
             pieces.iter().filter_map(|pieces| Some((pieces, speedup(pieces)?))).collect();
         let costs = PieceCosts::new(&measured, reference);
-        let curve = |(strategy, overheads): (&&dyn Strategy, &Overheads)| {
-            let policy = strategy.policy();
+        let curve = |(strategy, overheads): (&Strategy<'_>, &Overheads)| {
+            let policy = strategy.policy;
             let time = |threads: usize| {
                 let slowdown = slowdown(&slowdowns, threads);
                 let pieces =
@@ -217,12 +221,12 @@ impl Question<'_> {
             let own: Vec<(usize, f64)> =
                 times.iter().map(|&(threads, time)| (threads, one / time)).collect();
             let points = times.iter().map(|&(threads, time)| {
-                let row = find(&comparison, strategy.name(), threads);
+                let row = find(&comparison, strategy.name, threads);
                 let measured = row.and_then(|row| row.speedup);
                 ForecastPoint { threads, predicted: reference / time, measured }
             });
             ForecastCurve {
-                strategy: strategy.name(),
+                strategy: strategy.name,
                 overheads: *overheads,
                 points: points.collect(),
                 amdahl: amdahl(&own),
@@ -234,7 +238,7 @@ impl Question<'_> {
         let known = strategies
             .iter()
             .zip(&overheads)
-            .filter(|(strategy, _)| costs.know(strategy.policy().granularity));
+            .filter(|(strategy, _)| costs.know(strategy.policy.granularity));
         let curves = known.map(curve).collect();
         Ok(Forecast { curves, unavailable, slowdowns, comparison })
     }

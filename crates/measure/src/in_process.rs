@@ -127,23 +127,20 @@ pub(crate) fn nanoseconds(duration: Duration) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fakes::{FakeStrategy, GREY, Grey, Skip};
-    use rayweave_contract::{StrategyError, Threads};
+    use crate::fakes::{GREY, Grey, complete, skip};
+    use rayweave_contract::{RenderError, RenderFn, Strategy, Threads};
     use std::num::NonZeroUsize;
     use std::sync::atomic::{AtomicUsize, Ordering};
 
-    static COMPLETE: FakeStrategy = FakeStrategy::complete("complete", Threads::None);
+    static COMPLETE: Strategy = complete("complete", Threads::None);
 
-    /// Returns a strategy that renders at first, then nothing, and at last cannot be prepared.
-    fn tires() -> FakeStrategy {
-        FakeStrategy::new("tires", Threads::None, |earlier| match earlier {
-            0 => Ok(Skip(0)),
-            1 => Ok(Skip(usize::MAX)),
-            _ => {
-                let source = std::io::Error::other("tired");
-                Err(StrategyError::Spawn { strategy: "tires", threads: 1, source })
-            }
-        })
+    /// Prepares a strategy that renders at first, then nothing, and at last cannot be prepared.
+    fn tire(prepared: &AtomicUsize) -> Result<RenderFn, RenderError> {
+        match prepared.fetch_add(1, Ordering::Relaxed) {
+            0 => skip(0),
+            1 => skip(usize::MAX),
+            _ => Err(RenderError::Spawn { threads: 1, source: std::io::Error::other("tired") }),
+        }
     }
 
     /// Catches a count by the plan's tiles instead of the rendered ones, a count in timed
@@ -156,7 +153,7 @@ mod tests {
             Some(u64::from((rect.width + 1) * (rect.height + 1)))
         };
         let plan = NonZeroU32::new(100).expect("not 0");
-        let entry = Entry { strategy: &COMPLETE, threads: NonZeroUsize::MIN };
+        let entry = Entry { strategy: COMPLETE, threads: NonZeroUsize::MIN };
         let mut executor =
             InProcessExecutor::new(&Grey, 5, 4, plan).expect("an image").counting(&rays);
         // Four tiles of 2 x 2 and two of 1 x 2; the whole image is 5 x 4.
@@ -177,17 +174,19 @@ mod tests {
     /// Catches a first image that passes for the second, and times of the wrong spans.
     #[test]
     fn a_cold_rendering_is_prepared_and_rendered_and_then_rendered_again() {
-        let entry = Entry { strategy: &COMPLETE, threads: NonZeroUsize::MIN };
+        let entry = Entry { strategy: COMPLETE, threads: NonZeroUsize::MIN };
         let mut executor = InProcessExecutor::new(&Grey, 3, 2, NonZeroU32::MIN).expect("an image");
         let sample = executor.cold_and_warm(&entry).expect("rendered");
         assert_eq!(sample.cold_digest, Some(sample.digest));
         assert!(sample.cold_ns.expect("a first one") > sample.prepare_ns);
         assert_eq!(sample.cpu_ns.is_some(), cfg!(unix));
 
-        let tires = tires();
-        let entry = Entry { strategy: &tires, threads: NonZeroUsize::MIN };
+        let prepared = AtomicUsize::new(0);
+        let tires = |_| tire(&prepared);
+        let strategy = Strategy { prepare: &tires, ..COMPLETE };
+        let entry = Entry { strategy, threads: NonZeroUsize::MIN };
         let Sample { digest, cold_digest, .. } = executor.cold_and_warm(&entry).expect("rendered");
-        assert_eq!((cold_digest, tires.prepared()), (Some(digest), 1));
+        assert_eq!((cold_digest, prepared.load(Ordering::Relaxed)), (Some(digest), 1));
         let Sample { digest: again, cold_digest, .. } =
             executor.cold_and_warm(&entry).expect("nothing");
         assert!(again != digest && cold_digest == Some(again), "an earlier image");
@@ -196,7 +195,10 @@ mod tests {
     #[test]
     fn an_earlier_image_does_not_pass_for_a_later_one() {
         let mut executor = InProcessExecutor::new(&Grey, 3, 2, NonZeroU32::MIN).expect("an image");
-        let entry = Entry { strategy: &tires(), threads: NonZeroUsize::MIN };
+        let prepared = AtomicUsize::new(0);
+        let tires = |_| tire(&prepared);
+        let strategy = Strategy { name: "tires", prepare: &tires, ..COMPLETE };
+        let entry = Entry { strategy, threads: NonZeroUsize::MIN };
         let right = Image::filled(3, 2, GREY).expect("an image").digest();
         assert_eq!(executor.render(&entry).map(|rendering| rendering.digest), Ok(right));
         assert_ne!(executor.render(&entry).map(|rendering| rendering.digest), Ok(right));

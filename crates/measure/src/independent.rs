@@ -4,8 +4,8 @@
 use crate::in_process::nanoseconds;
 use crate::statistics::{Interval, ratio_interval};
 use rayweave_contract::{
-    Granularity, Image, Output, Plan, Policy, Renderer, Scheduling, Strategy, StrategyError,
-    Threads, Work, panic_message, render_tile,
+    Granularity, Image, Output, Plan, Policy, Prepare, RenderError, Scheduling, Strategy, Threads,
+    Work, panic_message, render_tile, renderer,
 };
 use std::collections::BTreeMap;
 use std::io;
@@ -13,13 +13,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-const NAME: &str = "independent";
-
 /// A strategy that does not share work: N threads render the image N times. Its time over that of
 /// one rendering is the slowdown by other cores.
-#[derive(Debug, Default)]
 pub struct Independent {
     shared: Arc<Mutex<Shared>>,
+    prepare: Box<Prepare<'static>>,
 }
 
 /// The state that one rendering leaves to the next.
@@ -32,7 +30,33 @@ struct Shared {
     thread_ns: BTreeMap<usize, Vec<u64>>,
 }
 
+impl Default for Independent {
+    /// Returns a strategy without a measurement yet.
+    fn default() -> Self {
+        let shared = Arc::<Mutex<Shared>>::default();
+        let kept = Arc::clone(&shared);
+        let prepare = move |plan| {
+            let shared = Arc::clone(&kept);
+            renderer(move |work, image| render(plan, &shared, work, image))
+        };
+        Self { shared, prepare: Box::new(prepare) }
+    }
+}
+
 impl Independent {
+    /// Returns the strategy, an entry of a comparison.
+    #[must_use]
+    pub fn strategy(&self) -> Strategy<'_> {
+        Strategy {
+            name: "independent",
+            summary: "each thread renders the whole image: how much cores slow each other down",
+            threads: Threads::PerRender,
+            policy: Policy::new(Granularity::Tile, Scheduling::Static, Output::InPlace),
+            unavailable: None,
+            prepare: &*self.prepare,
+        }
+    }
+
     /// Returns the time of a thread beside others, `threads` in all, over the times alone,
     /// `alone_ns` in nanoseconds, round by round. The latest renderings are used, as many as there
     /// are times alone. `None` if there are none.
@@ -48,60 +72,30 @@ impl Independent {
     }
 }
 
-impl Strategy for Independent {
-    fn name(&self) -> &'static str {
-        NAME
-    }
-
-    fn summary(&self) -> &'static str {
-        "each thread renders the whole image: how much cores slow each other down"
-    }
-
-    fn threads(&self) -> Threads {
-        Threads::PerRender
-    }
-
-    fn policy(&self) -> Policy {
-        Policy {
-            granularity: Granularity::Tile,
-            scheduling: Scheduling::Static,
-            output: Output::InPlace,
-        }
-    }
-
-    fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
-        Ok(Box::new(Copying { plan, shared: Arc::clone(&self.shared) }))
-    }
-}
-
-struct Copying {
+fn render(
     plan: Plan,
-    shared: Arc<Mutex<Shared>>,
-}
-
-impl Renderer for Copying {
-    fn render(&mut self, work: &dyn Work, image: &mut Image) -> Result<(), StrategyError> {
-        let threads = self.plan.threads.get();
-        let cannot_start = |source| StrategyError::Spawn { strategy: NAME, threads, source };
-        let mut shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
-        let Shared { copies, thread_ns } = &mut *shared;
-        copies.retain(|copy| (copy.width(), copy.height()) == (image.width(), image.height()));
-        while copies.len() < threads - 1 {
-            let copy = Image::new(image.width(), image.height());
-            copies.push(copy.map_err(|e| cannot_start(io::Error::other(e)))?);
-        }
-        let draw = |image: &mut Image| {
-            let begin = Instant::now();
-            image
-                .tiles(self.plan.tile)
-                .iter_mut()
-                .try_for_each(|tile| render_tile(NAME, work, tile))?;
-            Ok(begin.elapsed())
-        };
-        let drawn = thread::scope(|scope| {
+    shared: &Mutex<Shared>,
+    work: &dyn Work,
+    image: &mut Image,
+) -> Result<(), RenderError> {
+    let threads = plan.threads.get();
+    let cannot_start = |source| RenderError::Spawn { threads, source };
+    let mut shared = shared.lock().unwrap_or_else(PoisonError::into_inner);
+    let Shared { copies, thread_ns } = &mut *shared;
+    copies.retain(|copy| (copy.width(), copy.height()) == (image.width(), image.height()));
+    while copies.len() < threads - 1 {
+        let copy = Image::new(image.width(), image.height());
+        copies.push(copy.map_err(|e| cannot_start(io::Error::other(e)))?);
+    }
+    let draw = |image: &mut Image| {
+        let begin = Instant::now();
+        image.tiles(plan.tile).iter_mut().try_for_each(|tile| render_tile(work, tile))?;
+        Ok(begin.elapsed())
+    };
+    let drawn =
+        thread::scope(|scope| {
             let others = copies[..threads - 1].iter_mut().map(|copy| {
-                let thread = thread::Builder::new().name(NAME.to_owned());
-                thread.spawn_scoped(scope, || draw(copy)).map_err(cannot_start)
+                thread::Builder::new().spawn_scoped(scope, || draw(copy)).map_err(cannot_start)
             });
             let others = others.collect::<Result<Vec<_>, _>>()?;
             let mut drawn = vec![draw(image)?];
@@ -113,9 +107,8 @@ impl Renderer for Copying {
             }
             Ok(drawn)
         })?;
-        thread_ns.entry(threads).or_default().push(mean_ns(&drawn));
-        Ok(())
-    }
+    thread_ns.entry(threads).or_default().push(mean_ns(&drawn));
+    Ok(())
 }
 
 /// Returns the mean of `times` in nanoseconds; 0 if there are none.
@@ -136,7 +129,7 @@ mod tests {
         let (threads, tile) =
             (NonZeroUsize::new(3).expect("not 0"), NonZeroU32::new(2).expect("not 0"));
         let mut renderer =
-            Independent::default().prepare(Plan { threads, tile }).expect("prepared");
+            Independent::default().strategy().prepare(Plan { threads, tile }).expect("prepared");
         for (width, height) in [(5, 4), (2, 7)] {
             let work = even(1);
             let recorder = Recorder::new(&work);

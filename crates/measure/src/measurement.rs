@@ -118,11 +118,11 @@ pub struct Measurement {
 impl Measurement {
     /// Returns a measurement of `strategy` without a sample yet, for which `threads` were asked.
     #[must_use]
-    pub fn new(strategy: &dyn Strategy, threads: NonZeroUsize, control: bool) -> Self {
-        let starts_threads: Threads = strategy.threads();
-        let Policy { granularity, scheduling, output } = strategy.policy();
+    pub fn new(strategy: Strategy<'_>, threads: NonZeroUsize, control: bool) -> Self {
+        let starts_threads: Threads = strategy.threads;
+        let Policy { granularity, scheduling, output } = strategy.policy;
         Self {
-            strategy: strategy.name().to_owned(),
+            strategy: strategy.name.to_owned(),
             threads: starts_threads.computing_threads(threads).get(),
             control,
             granularity: granularity.to_string(),

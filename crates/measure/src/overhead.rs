@@ -41,9 +41,9 @@ const FIRST_SIDE: u32 = 64;
 #[derive(Clone, Copy)]
 pub struct Overhead<'a> {
     /// The strategy that break-even is relative to, and that steps are timed with.
-    pub reference: &'a dyn Strategy,
+    pub reference: Strategy<'a>,
     /// The strategies to measure; the reference may be among them.
-    pub strategies: &'a [&'a dyn Strategy],
+    pub strategies: &'a [Strategy<'a>],
     /// The number of computing threads.
     pub threads: NonZeroUsize,
     /// The number of rounds and the time for them.
@@ -134,14 +134,14 @@ impl Overhead<'_> {
     pub fn run(&self, mut progress: impl FnMut(&str, f64)) -> Result<OverheadStudy, OverheadError> {
         let begin = Instant::now();
         let mut workloads = Workloads::new(self.reference).map_err(OverheadError::Reference)?;
-        let strategies: Vec<&dyn Strategy> =
+        let strategies: Vec<Strategy<'_>> =
             std::iter::once(self.reference).chain(self.strategies.iter().copied()).collect();
         let mut samples: Vec<Result<Samples, Failure>> =
             vec![Ok(Samples::default()); strategies.len()];
         let mut rounds = self.protocol.rounds(strategies.len());
         while let Some(slot) = rounds.next(begin.elapsed()) {
             let strategy = strategies[slot.entry];
-            progress(strategy.name(), slot.fraction);
+            progress(strategy.name, slot.fraction);
             // Without the reference there are no figures.
             if samples[0].is_err() {
                 break;
@@ -161,8 +161,8 @@ impl Overhead<'_> {
         let reference =
             reference.map_err(|failure| OverheadError::Reference(failure.to_string()))?;
         let rows = samples.zip(self.strategies).map(|(samples, &strategy)| OverheadRow {
-            strategy: strategy.name(),
-            granularity: strategy.policy().granularity,
+            strategy: strategy.name,
+            granularity: strategy.policy.granularity,
             threads: self.threads_of(strategy).get(),
             figures: samples
                 .map(|samples| self.figures(strategy, &samples, &reference, workloads.step_ns)),
@@ -174,30 +174,26 @@ impl Overhead<'_> {
         })
     }
 
-    fn threads_of(&self, strategy: &dyn Strategy) -> NonZeroUsize {
-        strategy.threads().computing_threads(self.threads)
+    fn threads_of(&self, strategy: Strategy<'_>) -> NonZeroUsize {
+        strategy.threads.computing_threads(self.threads)
     }
 
     /// Measures everything once for one strategy.
-    fn measure(
-        &self,
-        strategy: &dyn Strategy,
-        workloads: &mut Workloads,
-    ) -> Result<Round, Failure> {
+    fn measure(&self, strategy: Strategy<'_>, workloads: &mut Workloads) -> Result<Round, Failure> {
         let threads = self.threads_of(strategy);
-        let failed = |error| Failure::Rendering(format!("{}: {error}", strategy.name()));
-        let times = |workloads: &mut [TimedImage], renderer: &mut dyn Renderer| {
+        let failed = |error| Failure::Rendering(format!("{}: {error}", strategy.name));
+        let times = |workloads: &mut [TimedImage], renderer: &mut Renderer| {
             workloads
                 .iter_mut()
                 .map(|image| image.time(renderer).map_err(failed))
                 .collect::<Result<Vec<_>, _>>()
         };
         let mut one = of_pixels(strategy, NonZeroUsize::MIN).map_err(Failure::Preparing)?;
-        let dispatch_one = DispatchProbe::slope(workloads.probe.time(&mut *one).map_err(failed)?);
+        let dispatch_one = DispatchProbe::slope(workloads.probe.time(&mut one).map_err(failed)?);
         let mut renderer = of_pixels(strategy, threads).map_err(Failure::Preparing)?;
         let dispatch_all =
-            DispatchProbe::slope(workloads.probe.time(&mut *renderer).map_err(failed)?);
-        let tasks = times(&mut workloads.tasks, &mut *renderer)?;
+            DispatchProbe::slope(workloads.probe.time(&mut renderer).map_err(failed)?);
+        let tasks = times(&mut workloads.tasks, &mut renderer)?;
         // Otherwise the threads would exist already: OpenMP keeps one pool for each calling thread.
         drop((one, renderer));
         let begin = Instant::now();
@@ -205,21 +201,21 @@ impl Overhead<'_> {
             .map_err(Failure::Preparing)?;
         let prepare = begin.elapsed().as_nanos() as f64;
         // The second time is neither the first nor later.
-        let uses = (0..3).map(|_| workloads.first.time(&mut *renderer).map_err(failed));
+        let uses = (0..3).map(|_| workloads.first.time(&mut renderer).map_err(failed));
         let uses = uses.collect::<Result<Vec<_>, _>>()?;
         let (first, later) = (uses[0], uses[2]);
-        let squares = times(&mut workloads.squares, &mut *renderer)?;
+        let squares = times(&mut workloads.squares, &mut renderer)?;
         Ok(Round { dispatch_one, dispatch_all, tasks, squares, prepare, first, later })
     }
 
     fn figures(
         &self,
-        strategy: &dyn Strategy,
+        strategy: Strategy<'_>,
         samples: &Samples,
         reference: &Samples,
         step_ns: f64,
     ) -> OverheadFigures {
-        let is_band = strategy.policy().granularity == Granularity::Band;
+        let is_band = strategy.policy.granularity == Granularity::Band;
         let threads = self.threads_of(strategy).get();
         let interval = |of: fn(&Round) -> f64| {
             let none = Interval::exactly(0.0);
@@ -241,7 +237,7 @@ impl Overhead<'_> {
                 (f64::from(side), median(&ratios.collect::<Vec<_>>()).unwrap_or(0.0))
             })
             .collect();
-        let is_reference = strategy.name() == self.reference.name();
+        let is_reference = strategy.name == self.reference.name;
         OverheadFigures {
             dispatch_one: (!is_band).then(|| interval(|round| round.dispatch_one)),
             dispatch_all: (!is_band).then(|| interval(|round| round.dispatch_all)),
@@ -301,7 +297,7 @@ struct Workloads {
 }
 
 impl Workloads {
-    fn new(reference: &dyn Strategy) -> Result<Self, String> {
+    fn new(reference: Strategy<'_>) -> Result<Self, String> {
         let step_ns = step(reference)?;
         let steps = (PIXEL_NS / step_ns).round() as u32;
         Ok(Self {
@@ -319,19 +315,16 @@ impl Workloads {
 }
 
 /// Prepares `strategy` with tiles of one pixel.
-pub(crate) fn of_pixels(
-    strategy: &dyn Strategy,
-    threads: NonZeroUsize,
-) -> Result<Box<dyn Renderer>, String> {
+pub(crate) fn of_pixels(strategy: Strategy<'_>, threads: NonZeroUsize) -> Result<Renderer, String> {
     catch_panic(|| strategy.prepare(Plan { threads, tile: NonZeroU32::MIN }))
 }
 
 /// Returns the nanoseconds of a step of synthetic work on one thread of `reference`.
-pub(crate) fn step(reference: &dyn Strategy) -> Result<f64, String> {
+pub(crate) fn step(reference: Strategy<'_>) -> Result<f64, String> {
     const STEPS: u32 = 1 << 10;
     let mut renderer = of_pixels(reference, NonZeroUsize::MIN)?;
     let (mut none, mut many) = (TimedImage::column(TASKS, 0)?, TimedImage::column(TASKS, STEPS)?);
-    let times = (0..9).map(|_| Ok(many.time(&mut *renderer)? - none.time(&mut *renderer)?));
+    let times = (0..9).map(|_| Ok(many.time(&mut renderer)? - none.time(&mut renderer)?));
     let time = median(&times.collect::<Result<Vec<_>, String>>()?).unwrap_or(0.0);
     // A coarse clock must not give a step of no time.
     Ok(time.max(1.0) / f64::from(TASKS) / f64::from(STEPS))

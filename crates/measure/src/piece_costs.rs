@@ -2,8 +2,8 @@
 
 use crate::statistics::lower_quartile;
 use rayweave_contract::{
-    Granularity, Image, Output, Plan, Policy, Renderer, Scheduling, Strategy, StrategyError,
-    Threads, Tile, Work, render_tile,
+    Granularity, Image, Output, Plan, Policy, Prepare, RenderError, Scheduling, Strategy, Threads,
+    Tile, Work, render_tile, renderer,
 };
 use std::num::NonZeroU32;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -58,10 +58,10 @@ impl Cut {
 
 /// A strategy that does not share work: the caller's thread renders and times one piece after the
 /// other. As an entry of a comparison it is measured in the same rounds as the others.
-#[derive(Debug)]
 pub struct OneByOne {
     cut: Cut,
     log: Arc<Mutex<Log>>,
+    prepare: Box<Prepare<'static>>,
 }
 
 /// The times of all renderings so far.
@@ -78,7 +78,32 @@ impl OneByOne {
     /// Returns a strategy for this cut, without a measurement yet.
     #[must_use]
     pub fn new(cut: Cut) -> Self {
-        Self { cut, log: Arc::default() }
+        let log = Arc::<Mutex<Log>>::default();
+        let kept = Arc::clone(&log);
+        let prepare = move |plan| {
+            let log = Arc::clone(&kept);
+            renderer(move |work, image| render(plan, cut, &log, work, image))
+        };
+        Self { cut, log, prepare: Box::new(prepare) }
+    }
+
+    /// Returns the strategy, an entry of a comparison.
+    #[must_use]
+    pub fn strategy(&self) -> Strategy<'_> {
+        let granularity = match self.cut {
+            Cut::Pixels => Granularity::Pixel,
+            Cut::Rows => Granularity::Row,
+            Cut::Tiles => Granularity::Tile,
+            Cut::Whole => Granularity::Band,
+        };
+        Strategy {
+            name: self.cut.name(),
+            summary: "one thread renders and times each piece",
+            threads: Threads::None,
+            policy: Policy::new(granularity, Scheduling::Static, Output::InPlace),
+            unavailable: None,
+            prepare: &*self.prepare,
+        }
     }
 
     /// Returns the nanoseconds of every piece, which sum to `total`. They are in proportion to the
@@ -91,75 +116,45 @@ impl OneByOne {
     }
 }
 
-impl Strategy for OneByOne {
-    fn name(&self) -> &'static str {
-        self.cut.name()
-    }
-
-    fn summary(&self) -> &'static str {
-        "one thread renders and times each piece"
-    }
-
-    fn threads(&self) -> Threads {
-        Threads::None
-    }
-
-    fn policy(&self) -> Policy {
-        let piece = match self.cut {
-            Cut::Pixels => Granularity::Pixel,
-            Cut::Rows => Granularity::Row,
-            Cut::Tiles => Granularity::Tile,
-            Cut::Whole => Granularity::Band,
-        };
-        Policy { granularity: piece, scheduling: Scheduling::Static, output: Output::InPlace }
-    }
-
-    fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
-        Ok(Box::new(Timing { cut: self.cut, tile: plan.tile, log: Arc::clone(&self.log) }))
-    }
-}
-
-struct Timing {
+fn render(
+    plan: Plan,
     cut: Cut,
-    tile: NonZeroU32,
-    log: Arc<Mutex<Log>>,
-}
-
-impl Renderer for Timing {
-    fn render(&mut self, work: &dyn Work, image: &mut Image) -> Result<(), StrategyError> {
-        let width = image.width() as usize;
-        let timed = |tile: &mut Tile<'_>| {
-            let begin = Instant::now();
-            render_tile(self.cut.name(), work, tile)?;
-            Ok(begin.elapsed().as_nanos() as f64)
-        };
-        let costs: Result<Vec<f64>, StrategyError> = match self.cut {
-            Cut::Pixels => pixels(work, image),
-            Cut::Rows => (0..)
-                .zip(image.pixels_mut().chunks_mut(width))
-                .map(|(y, row)| timed(&mut Tile::row(0, y, row)))
-                .collect(),
-            Cut::Tiles => image.tiles(self.tile).iter_mut().map(timed).collect(),
-            // With tiles larger than the image there is one.
-            Cut::Whole => image.tiles(NonZeroU32::MAX).iter_mut().map(timed).collect(),
-        };
-        let costs = costs?;
-        let mut log = self.log.lock().unwrap_or_else(PoisonError::into_inner);
-        log.pieces = if self.cut == Cut::Pixels { image.pixels().len() } else { costs.len() };
-        log.passes.push(costs);
-        Ok(())
-    }
+    log: &Mutex<Log>,
+    work: &dyn Work,
+    image: &mut Image,
+) -> Result<(), RenderError> {
+    let width = image.width() as usize;
+    let timed = |tile: &mut Tile<'_>| {
+        let begin = Instant::now();
+        render_tile(work, tile)?;
+        Ok(begin.elapsed().as_nanos() as f64)
+    };
+    let costs: Result<Vec<f64>, RenderError> = match cut {
+        Cut::Pixels => pixels(work, image),
+        Cut::Rows => (0..)
+            .zip(image.pixels_mut().chunks_mut(width))
+            .map(|(y, row)| timed(&mut Tile::row(0, y, row)))
+            .collect(),
+        Cut::Tiles => image.tiles(plan.tile).iter_mut().map(timed).collect(),
+        // With tiles larger than the image there is one.
+        Cut::Whole => image.tiles(NonZeroU32::MAX).iter_mut().map(timed).collect(),
+    };
+    let costs = costs?;
+    let mut log = log.lock().unwrap_or_else(PoisonError::into_inner);
+    log.pieces = if cut == Cut::Pixels { image.pixels().len() } else { costs.len() };
+    log.passes.push(costs);
+    Ok(())
 }
 
 /// Renders the pixels, and times [`RUN`] of them together.
-fn pixels(work: &dyn Work, image: &mut Image) -> Result<Vec<f64>, StrategyError> {
+fn pixels(work: &dyn Work, image: &mut Image) -> Result<Vec<f64>, RenderError> {
     let width = image.width() as usize;
     let mut costs = Vec::with_capacity(image.pixels().len().div_ceil(RUN));
     for (run, colors) in image.pixels_mut().chunks_mut(RUN).enumerate() {
         let begin = Instant::now();
         for (index, color) in (run * RUN..).zip(colors) {
             let mut tile = Tile::pixel((index % width) as u32, (index / width) as u32, color);
-            render_tile(Cut::Pixels.name(), work, &mut tile)?;
+            render_tile(work, &mut tile)?;
         }
         costs.push(begin.elapsed().as_nanos() as f64);
     }
@@ -272,7 +267,7 @@ mod tests {
         let plan = Plan { threads: NonZeroUsize::MIN, tile: NonZeroU32::new(4).expect("not 0") };
         let mut image = Image::new(7, 5).expect("an image");
         for _ in 0..2 {
-            let mut renderer = one_by_one.prepare(plan).expect("prepared");
+            let mut renderer = one_by_one.strategy().prepare(plan).expect("prepared");
             renderer.render(&even(50), &mut image).expect("drawn");
         }
         one_by_one

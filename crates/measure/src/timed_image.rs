@@ -46,7 +46,7 @@ impl TimedImage {
     /// # Errors
     ///
     /// The renderer fails, or gives another image.
-    pub(crate) fn time(&mut self, renderer: &mut dyn Renderer) -> Result<f64, String> {
+    pub(crate) fn time(&mut self, renderer: &mut Renderer) -> Result<f64, String> {
         sentinel::fill(&mut self.image);
         let begin = Instant::now();
         let result = catch_panic(|| renderer.render(&*self.work, &mut self.image));
@@ -72,7 +72,7 @@ impl DispatchProbe {
     }
 
     /// Returns the nanoseconds that `renderer` takes for the short column and for the long one.
-    pub(crate) fn time(&mut self, renderer: &mut dyn Renderer) -> Result<[f64; 2], String> {
+    pub(crate) fn time(&mut self, renderer: &mut Renderer) -> Result<[f64; 2], String> {
         // Not counted: the first list of so many tiles pays for fresh memory.
         self.long.time(renderer)?;
         Ok([self.short.time(renderer)?, self.long.time(renderer)?])
@@ -88,14 +88,25 @@ impl DispatchProbe {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fakes::Skip;
+    use crate::fakes::{complete, skip};
+    use rayweave_contract::{Plan, Strategy, Threads};
+    use std::num::{NonZeroU32, NonZeroUsize};
 
     /// Catches a time of a wrong image, and one that is right only by the rendering before.
     #[test]
     fn a_wrong_image_has_no_time() {
+        let renderer = |left_out| {
+            let strategy =
+                Strategy { prepare: &|_| skip(left_out), ..complete("fake", Threads::None) };
+            let plan = Plan { threads: NonZeroUsize::MIN, tile: NonZeroU32::MIN };
+            strategy.prepare(plan).expect("a renderer")
+        };
         let mut column = TimedImage::column(9, 2).expect("an image");
-        assert!(column.time(&mut Skip(0)).is_ok());
-        assert_eq!(column.time(&mut Skip(1)), Err("a wrong image of synthetic work".to_owned()));
-        assert!(column.time(&mut Skip(0)).is_ok());
+        assert!(column.time(&mut renderer(0)).is_ok());
+        assert_eq!(
+            column.time(&mut renderer(1)),
+            Err("a wrong image of synthetic work".to_owned())
+        );
+        assert!(column.time(&mut renderer(0)).is_ok());
     }
 }

@@ -3,46 +3,47 @@
 
 use rayweave_contract::Strategy;
 
-/// All strategies, in the order of every table: the reference first, then from the simplest on.
-pub static STRATEGIES: &[&dyn Strategy] = &[
-    &rayweave_sequential::Sequential,
-    &rayweave_scoped_bands::ScopedBands,
-    &rayweave_row_counter::RowCounter,
-    &rayweave_rayon_pixels::RayonPixels,
-    &rayweave_rayon_rows::RayonRows,
-    &rayweave_rayon_tiles::RayonTiles,
-    &rayweave_mutex_image::MutexImage,
-    &rayweave_std_mutex_image::StdMutexImage,
-    &rayweave_mutex_rows::MutexRows,
-    &rayweave_channel_rows::ChannelRows,
-    &rayweave_tile_queue::TileQueue,
-    &rayweave_work_stealing::WorkStealing,
-    &rayweave_paralight_tiles::ParalightTiles,
-    &rayweave_openmp::STATIC,
-    &rayweave_openmp::DYNAMIC,
-    &rayweave_openmp::GUIDED,
+/// All strategies in the order of the lessons, which is that of every table. The first is the
+/// reference.
+pub static STRATEGIES: &[Strategy] = &[
+    rayweave_sequential::STRATEGY,
+    rayweave_scoped_bands::STRATEGY,
+    rayweave_mutex_image::STRATEGY,
+    rayweave_mutex_image::WITH_STD,
+    rayweave_mutex_rows::STRATEGY,
+    rayweave_channel_rows::STRATEGY,
+    rayweave_row_counter::STRATEGY,
+    rayweave_tile_queue::STRATEGY,
+    rayweave_rayon_pixels::STRATEGY,
+    rayweave_rayon_rows::STRATEGY,
+    rayweave_rayon_tiles::STRATEGY,
+    rayweave_work_stealing::STRATEGY,
+    rayweave_paralight_tiles::STRATEGY,
+    rayweave_openmp::STATIC,
+    rayweave_openmp::DYNAMIC,
+    rayweave_openmp::GUIDED,
 ];
 
 /// Returns the strategies that can be prepared on this machine; `all` means these.
 #[must_use]
-pub fn available() -> Vec<&'static dyn Strategy> {
-    STRATEGIES.iter().copied().filter(|strategy| strategy.unavailable().is_none()).collect()
+pub fn available() -> Vec<Strategy<'static>> {
+    STRATEGIES.iter().copied().filter(|strategy| strategy.unavailable.is_none()).collect()
 }
 
 /// Returns the strategy that all others are compared with.
 #[must_use]
-pub fn reference() -> &'static dyn Strategy {
+pub fn reference() -> Strategy<'static> {
     STRATEGIES[0]
 }
 
 /// Returns the strategy with this name.
 #[must_use]
-pub fn find(name: &str) -> Option<&'static dyn Strategy> {
-    STRATEGIES.iter().copied().find(|strategy| strategy.name() == name)
+pub fn find(name: &str) -> Option<Strategy<'static>> {
+    STRATEGIES.iter().copied().find(|strategy| strategy.name == name)
 }
 
 /// Returns the strategy to use where nothing else decides.
 #[must_use]
-pub fn recommended() -> &'static dyn Strategy {
-    &rayweave_tile_queue::TileQueue
+pub fn recommended() -> Strategy<'static> {
+    rayweave_tile_queue::STRATEGY
 }

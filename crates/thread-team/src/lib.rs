@@ -5,7 +5,7 @@
 //! not compute, because Linux often leaves a new thread on the core of the thread that started it
 //! until the next load balancing some milliseconds later.
 
-use rayweave_contract::{StrategyError, Tile, Work, render_tile};
+use rayweave_contract::{RenderError, Tile, Work, render_tile};
 use std::iter;
 use std::num::NonZeroUsize;
 use std::ops::Range;
@@ -17,12 +17,12 @@ use std::thread;
 #[derive(Debug)]
 pub struct Stop;
 
-/// The shared state of threads that stop together: those that [`run`] starts, or a library's.
-#[derive(Debug)]
+/// The shared state of threads that stop together: those that [`run`] starts, or a library's, for
+/// which `Team::default()` makes one.
+#[derive(Debug, Default)]
 pub struct Team {
-    strategy: &'static str,
     stopped: AtomicBool,
-    first_error: Mutex<Option<StrategyError>>,
+    first_error: Mutex<Option<RenderError>>,
 }
 
 /// Runs `body` on one thread for each of `shares`, all at the same time, and waits for them.
@@ -35,11 +35,10 @@ pub struct Team {
 /// The first failure: the work panicked, or a thread could not be started. The other threads stop
 /// at their next tile and are joined before this returns.
 pub fn run<Share: Send>(
-    strategy: &'static str,
     shares: impl ExactSizeIterator<Item = Share>,
     body: impl Fn(&Team, Share) -> Result<(), Stop> + Sync,
-) -> Result<(), StrategyError> {
-    run_with(strategy, shares, body, || {})
+) -> Result<(), RenderError> {
+    run_with(shares, body, || {})
 }
 
 /// Runs `body` as [`run`] does, and `meanwhile` on the caller's thread. `meanwhile` begins once the
@@ -49,20 +48,19 @@ pub fn run<Share: Send>(
 ///
 /// As [`run`].
 pub fn run_with<Share: Send>(
-    strategy: &'static str,
     shares: impl ExactSizeIterator<Item = Share>,
     body: impl Fn(&Team, Share) -> Result<(), Stop> + Sync,
     meanwhile: impl FnOnce(),
-) -> Result<(), StrategyError> {
+) -> Result<(), RenderError> {
     let threads = shares.len();
-    let team = Team::new(strategy);
+    let team = Team::default();
     let (team_ref, body) = (&team, &body);
     thread::scope(|scope| {
         for (index, share) in shares.enumerate() {
-            let thread = thread::Builder::new().name(format!("{strategy} {index}"));
+            let thread = thread::Builder::new().name(format!("thread {index}"));
             // The team keeps the failure, so `Stop` carries nothing more.
             if let Err(source) = thread.spawn_scoped(scope, move || drop(body(team_ref, share))) {
-                team_ref.fail(StrategyError::Spawn { strategy, threads, source });
+                team_ref.fail(RenderError::Spawn { threads, source });
                 break;
             }
         }
@@ -77,14 +75,14 @@ pub fn run_with<Share: Send>(
 /// # Errors
 ///
 /// A thread could not be started.
-pub fn probe(strategy: &'static str, threads: NonZeroUsize) -> Result<(), StrategyError> {
+pub fn probe(threads: NonZeroUsize) -> Result<(), RenderError> {
     let gate = Mutex::new(());
     let closed = gate.lock();
     let wait = |_: &Team, ()| {
         drop(gate.lock());
         Ok(())
     };
-    run_with(strategy, iter::repeat_n((), threads.get()), wait, || drop(closed))
+    run_with(iter::repeat_n((), threads.get()), wait, || drop(closed))
 }
 
 /// Partitions `count` pieces into one contiguous range for each thread. The lengths differ by one
@@ -98,12 +96,6 @@ pub fn block_partition(
 }
 
 impl Team {
-    /// Returns a team for threads that a library starts.
-    #[must_use]
-    pub fn new(strategy: &'static str) -> Self {
-        Self { strategy, stopped: AtomicBool::new(false), first_error: Mutex::new(None) }
-    }
-
     /// Renders one tile, unless the team has stopped.
     ///
     /// # Errors
@@ -113,7 +105,7 @@ impl Team {
         if self.stopped.load(Ordering::Relaxed) {
             return Err(Stop);
         }
-        render_tile(self.strategy, work, tile).map_err(|error| self.fail(error))
+        render_tile(work, tile).map_err(|error| self.fail(error))
     }
 
     /// Returns the result of the whole team. Call it after the last thread has ended.
@@ -121,12 +113,12 @@ impl Team {
     /// # Errors
     ///
     /// The first failure.
-    pub fn outcome(self) -> Result<(), StrategyError> {
+    pub fn outcome(self) -> Result<(), RenderError> {
         let first_error = self.first_error.into_inner().unwrap_or_else(PoisonError::into_inner);
         first_error.map_or(Ok(()), Err)
     }
 
-    fn fail(&self, error: StrategyError) -> Stop {
+    fn fail(&self, error: RenderError) -> Stop {
         let mut first = self.first_error.lock().unwrap_or_else(PoisonError::into_inner);
         first.get_or_insert(error);
         self.stopped.store(true, Ordering::Relaxed);
@@ -160,7 +152,7 @@ mod tests {
             sender.send(index).map_err(|_| Stop)
         };
         let senders = iter::repeat_n(sender, 5).enumerate();
-        run_with("test", senders, send, || received.extend(receiver)).expect("the threads start");
+        run_with(senders, send, || received.extend(receiver)).expect("the threads start");
         received.sort_unstable();
         assert_eq!(received, [0, 1, 2, 3, 4]);
     }
@@ -174,7 +166,7 @@ mod tests {
             ran.lock().unwrap_or_else(PoisonError::into_inner).push((share, by_caller));
             Ok(())
         };
-        run("test", 0..5, note).expect("the threads start");
+        run(0..5, note).expect("the threads start");
         let mut ran = ran.into_inner().expect("nobody panicked");
         ran.sort_unstable();
         assert!(ran.into_iter().eq((0..5).map(|share| (share, false))));
@@ -182,6 +174,6 @@ mod tests {
 
     #[test]
     fn a_probe_starts_all_threads() {
-        probe("test", NonZeroUsize::new(20).expect("not 0")).expect("20 threads start");
+        probe(NonZeroUsize::new(20).expect("not 0")).expect("20 threads start");
     }
 }

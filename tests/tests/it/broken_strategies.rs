@@ -3,8 +3,8 @@
 
 use crate::gradient::{Gradient, PATIENCE, Panics, threads, tile};
 use rayweave_contract::{
-    Granularity, Image, Output, Plan, Policy, Rect, Renderer, Rgb, Scheduling, Strategy,
-    StrategyError, Threads, Tile, Work, render_tile,
+    Granularity, Image, Output, Plan, Policy, Prepare, Rect, RenderError, Rgb, Scheduling,
+    Strategy, Threads, Tile, Work, render_tile, renderer,
 };
 use rayweave_measure::{Check, CheckCase, Fault, Finding};
 use rayweave_registry::reference;
@@ -13,51 +13,23 @@ use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::Duration;
 
-const NAME: &str = "broken";
+type Rendered = Result<(), RenderError>;
 
-type Rendered = Result<(), StrategyError>;
-type Render = dyn Fn(Plan, &dyn Work, &mut Image) -> Rendered + Send + Sync;
-
-/// A strategy that renders in its own, wrong way.
-#[derive(Clone)]
-struct Broken(Arc<Render>);
-
-impl Strategy for Broken {
-    fn name(&self) -> &'static str {
-        NAME
-    }
-
-    fn summary(&self) -> &'static str {
-        "wrong in one way"
-    }
-
-    fn threads(&self) -> Threads {
-        Threads::PerRender
-    }
-
-    fn policy(&self) -> Policy {
-        Policy {
-            granularity: Granularity::Tile,
-            scheduling: Scheduling::Dynamic { chunk: 1 },
-            output: Output::InPlace,
-        }
-    }
-
-    fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
-        Ok(Box::new(Prepared(plan, self.clone())))
-    }
-}
-
-struct Prepared(Plan, Broken);
-
-impl Renderer for Prepared {
-    fn render(&mut self, work: &dyn Work, image: &mut Image) -> Result<(), StrategyError> {
-        (self.1.0)(self.0, work, image)
+/// Returns a strategy that renders in its own, wrong way.
+fn broken_strategy<'a>(prepare: &'a Prepare<'a>) -> Strategy<'a> {
+    let scheduling = Scheduling::Dynamic { chunk: 1 };
+    Strategy {
+        name: "broken",
+        summary: "wrong in one way",
+        threads: Threads::PerRender,
+        policy: Policy::new(Granularity::Tile, scheduling, Output::InPlace),
+        unavailable: None,
+        prepare,
     }
 }
 
 /// Renders right, to be broken: the thread "share `i % threads`" computes tile `i`.
-fn share_out(threads: usize, work: &dyn Work, tiles: Vec<Tile<'_>>) -> Result<(), StrategyError> {
+fn share_out(threads: usize, work: &dyn Work, tiles: Vec<Tile<'_>>) -> Result<(), RenderError> {
     let mut shares: Vec<Vec<Tile<'_>>> = (0..threads).map(|_| Vec::new()).collect();
     for (index, tile) in tiles.into_iter().enumerate() {
         shares[index % threads].push(tile);
@@ -65,15 +37,14 @@ fn share_out(threads: usize, work: &dyn Work, tiles: Vec<Tile<'_>>) -> Result<()
     thread::scope(|scope| {
         for (index, mut share) in shares.into_iter().enumerate() {
             let thread = thread::Builder::new().name(format!("share {index}"));
-            let compute =
-                move || share.iter_mut().try_for_each(|tile| render_tile(NAME, work, tile));
+            let compute = move || share.iter_mut().try_for_each(|tile| render_tile(work, tile));
             thread.spawn_scoped(scope, compute).expect("a thread");
         }
     });
     Ok(())
 }
 
-fn right(plan: Plan, work: &dyn Work, image: &mut Image) -> Result<(), StrategyError> {
+fn right(plan: Plan, work: &dyn Work, image: &mut Image) -> Result<(), RenderError> {
     share_out(plan.threads.get(), work, image.tiles(plan.tile))
 }
 
@@ -95,9 +66,14 @@ fn findings_at(
 ) -> Vec<Finding> {
     let cases =
         [CheckCase { name: "gradient".to_owned(), width, height, work: Box::new(Gradient) }];
+    let broken = Arc::new(broken);
+    let prepare = |plan| {
+        let broken = Arc::clone(&broken);
+        renderer(move |work, image| broken(plan, work, image))
+    };
     let check = Check {
         reference: reference(),
-        strategies: &[&Broken(Arc::new(broken))],
+        strategies: &[broken_strategy(&prepare)],
         cases: &cases,
         threads: &[threads(2)],
         tiles: &[tile(8)],
@@ -115,7 +91,7 @@ type By = (Rect, Option<String>);
 fn the_difference(findings: &[Finding]) -> (usize, (u32, u32), Option<Rgb>, Option<By>) {
     let [
         Finding {
-            strategy: NAME,
+            strategy: "broken",
             threads: 2,
             render: Some(render),
             fault: Fault::Different(found),
@@ -172,7 +148,7 @@ fn writes_a_pixel_twice_with_a_torn_value() {
         right(plan, work, image)?;
         if image.width() == 20 {
             let mut color = [0.0; 3];
-            render_tile(NAME, work, &mut Tile::pixel(5, 9, &mut color))?;
+            render_tile(work, &mut Tile::pixel(5, 9, &mut color))?;
             let [red, _, blue] = color;
             image.pixels_mut()[9 * 20 + 5] = [red, color[0], blue];
         }
@@ -279,7 +255,7 @@ fn joins_one_thread_before_the_next() {
         let mut tiles = image.tiles(plan.tile);
         let share = tiles.len().div_ceil(plan.threads.get());
         for tiles in tiles.chunks_mut(share) {
-            let compute = || tiles.iter_mut().try_for_each(|tile| render_tile(NAME, work, tile));
+            let compute = || tiles.iter_mut().try_for_each(|tile| render_tile(work, tile));
             thread::scope(|scope| scope.spawn(compute).join()).expect("no panic")?;
         }
         Ok(())
@@ -291,12 +267,11 @@ fn joins_one_thread_before_the_next() {
 /// not only for each number of threads.
 #[test]
 fn is_not_waited_for_again_with_other_tiles() {
-    let alone = Broken(Arc::new(|plan: Plan, work: &dyn Work, image: &mut Image| {
-        share_out(1, work, image.tiles(plan.tile))
-    }));
+    let alone =
+        |plan: Plan| renderer(move |work, image| share_out(1, work, image.tiles(plan.tile)));
     let check = Check {
         reference: reference(),
-        strategies: &[&alone],
+        strategies: &[broken_strategy(&alone)],
         cases: &[],
         threads: &[threads(2), threads(3)],
         tiles: &[tile(1), tile(8)],
@@ -352,7 +327,7 @@ fn returns_an_error() {
     let found = findings_at((20, 12), IMPATIENCE, |_, work, image| {
         // A work that panics, as a strategy sees it.
         let panics = Panics { work, x: 3, y: 1 };
-        image.tiles(tile(2)).iter_mut().try_for_each(|tile| render_tile(NAME, &panics, tile))
+        image.tiles(tile(2)).iter_mut().try_for_each(|tile| render_tile(&panics, tile))
     });
     // Once while its threads are counted, once for the image.
     let message = "broken: the work panicked in the tile 2x2 at (2, 0): injected".to_owned();

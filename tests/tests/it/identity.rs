@@ -37,8 +37,7 @@ fn strategies_agree(name: &str, precision: Precision) {
     for strategy in rayweave_registry::available() {
         for (threads, tile) in THREADS.iter().flat_map(|threads| TILES.map(|tile| (*threads, tile)))
         {
-            let context =
-                format!("{name}: {}, {threads} threads, tiles of {tile}", strategy.name());
+            let context = format!("{name}: {}, {threads} threads, tiles of {tile}", strategy.name);
             let plan = Plan {
                 threads: NonZeroUsize::new(threads).expect("not 0"),
                 tile: NonZeroU32::new(tile).expect("not 0"),

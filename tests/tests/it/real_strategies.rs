@@ -1,7 +1,7 @@
 //! The strategies of the registry pass every check, and survive work that panics.
 
 use crate::gradient::{Gradient, PATIENCE, Panics, threads, tile};
-use rayweave_contract::{Image, Plan, Strategy, StrategyError, Threads, Tile, Work};
+use rayweave_contract::{Image, Plan, RenderError, Strategy, StrategyError, Threads, Tile, Work};
 use rayweave_measure::{Check, CheckCase};
 use rayweave_registry::{available, reference};
 use std::num::NonZeroUsize;
@@ -39,7 +39,7 @@ fn the_real_strategies_agree() {
         })
         .expect("a reference image");
     assert_eq!(verdict.findings, []);
-    let alone = available().iter().filter(|s| s.threads() == Threads::None).count();
+    let alone = available().iter().filter(|s| s.threads == Threads::None).count();
     let settings = ((available().len() - alone) * THREADS.len() + alone) * 4;
     assert_eq!(verdict.compared, settings * sizes.len() * 2);
     assert_eq!(verdict.compared, told);
@@ -63,17 +63,19 @@ fn the_real_strategies_survive_work_that_panics() {
     watched.join().expect("every strategy survives");
 }
 
-fn survives(strategy: &dyn Strategy, threads: NonZeroUsize) {
-    let context = format!("{}, {threads} threads", strategy.name());
+fn survives(strategy: Strategy<'_>, threads: NonZeroUsize) {
+    let context = format!("{}, {threads} threads", strategy.name);
     let mut renderer = strategy.prepare(Plan { threads, tile: tile(8) }).expect(&context);
     let mut image = Image::new(97, 61).expect("an image");
     for (x, y) in [(0, 0), (50, 30), (96, 60)] {
         let error =
             renderer.render(&Panics { work: Gradient, x, y }, &mut image).expect_err(&context);
-        let StrategyError::Panicked { strategy: name, tile, message } = error else {
+        let StrategyError { strategy: name, error: RenderError::Panicked { tile, message } } =
+            error
+        else {
             panic!("{context}: {error}");
         };
-        assert_eq!((name, message.as_str()), (strategy.name(), "injected"), "{context}");
+        assert_eq!((name, message.as_str()), (strategy.name, "injected"), "{context}");
         assert!(tile.contains(x, y), "{context}: ({x}, {y}) is not in {tile}");
 
         image.fill([0.0; 3]);
@@ -100,6 +102,6 @@ fn work_that_always_panics_ends() {
         let plan = Plan { threads: threads(8), tile: tile(8) };
         let mut renderer = strategy.prepare(plan).expect("a renderer");
         let error = renderer.render(&AlwaysPanics, &mut image).expect_err("a panic").to_string();
-        assert!(error.starts_with(strategy.name()) && error.ends_with(": always"), "{error}");
+        assert!(error.starts_with(strategy.name) && error.ends_with(": always"), "{error}");
     }
 }

@@ -22,7 +22,7 @@ pub struct Arguments {
     scene: Option<PathBuf>,
     /// Strategies to check [default: all]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',', value_parser = strategy_parser())]
-    strategy: Vec<&'static dyn Strategy>,
+    strategy: Vec<Strategy<'static>>,
     /// Numbers of computing threads [default: all cores for the full size; for several small sizes
     /// 1, 2, 3, all and twice all]
     #[arg(long, value_name = "N,...", value_delimiter = ',', value_parser = parse_threads)]

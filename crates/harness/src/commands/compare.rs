@@ -36,7 +36,7 @@ pub struct Arguments {
 pub struct Options {
     /// Strategies to time [default: all]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',', value_parser = strategy_parser())]
-    strategy: Vec<&'static dyn Strategy>,
+    strategy: Vec<Strategy<'static>>,
     /// Numbers of computing threads [default: all that the machine and its quota allow]
     #[arg(long, value_name = "N,...", value_delimiter = ',', value_parser = parse_threads)]
     threads: Vec<NonZeroUsize>,

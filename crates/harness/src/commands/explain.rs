@@ -25,7 +25,7 @@ pub struct Arguments {
     scene: Option<PathBuf>,
     /// Strategies to explain [default: the recommended one]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',', value_parser = strategy_parser())]
-    strategy: Vec<&'static dyn Strategy>,
+    strategy: Vec<Strategy<'static>>,
     /// Number of computing threads [default: all that the machine and its quota allow]
     #[arg(long, value_name = "N", value_parser = parse_threads)]
     threads: Option<NonZeroUsize>,
@@ -68,7 +68,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let recommended = [rayweave_registry::recommended()];
     let strategies = distinct(
         if arguments.strategy.is_empty() { &recommended } else { &arguments.strategy },
-        |s| s.name(),
+        |s| s.name,
     );
     let pictures =
         arguments.pictures.as_deref().map(|folder| image_files(folder, &strategies)).transpose()?;
@@ -122,10 +122,10 @@ struct ImageFiles {
 }
 
 /// Creates the folder and checks that all images can be written, before anything is measured.
-fn image_files(folder: &Path, strategies: &[&dyn Strategy]) -> Result<Vec<ImageFiles>, String> {
+fn image_files(folder: &Path, strategies: &[Strategy<'_>]) -> Result<Vec<ImageFiles>, String> {
     fs::create_dir_all(folder).map_err(|e| format!("{}: cannot be made: {e}", folder.display()))?;
-    let of = |strategy: &&dyn Strategy| {
-        let file = |what| PendingFile::create(&folder.join(format!("{}-{what}", strategy.name())));
+    let of = |strategy: &Strategy<'_>| {
+        let file = |what| PendingFile::create(&folder.join(format!("{}-{what}", strategy.name)));
         Ok(ImageFiles {
             timeline: file("timeline.svg")?,
             owners: file("threads.png")?,

@@ -17,7 +17,7 @@ use std::time::Duration;
 pub struct Arguments {
     /// Strategies to measure [default: all]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',', value_parser = strategy_parser())]
-    strategy: Vec<&'static dyn Strategy>,
+    strategy: Vec<Strategy<'static>>,
     /// Number of computing threads [default: all that the machine and its quota allow]
     #[arg(long, value_name = "N", value_parser = parse_threads)]
     threads: Option<NonZeroUsize>,

@@ -23,7 +23,7 @@ pub struct Arguments {
     scene: Option<PathBuf>,
     /// Strategies to predict; each must start threads [default: all that do]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',', value_parser = strategy_parser())]
-    strategy: Vec<&'static dyn Strategy>,
+    strategy: Vec<Strategy<'static>>,
     /// Numbers of computing threads, each 1..=1024. A..B is A, B and the powers of two between
     #[arg(
         long,

@@ -23,7 +23,7 @@ pub struct Arguments {
     output: Option<PathBuf>,
     /// Strategy to render with [default: the recommended one]
     #[arg(long, value_name = "NAME", value_parser = strategy_parser())]
-    strategy: Option<&'static dyn Strategy>,
+    strategy: Option<Strategy<'static>>,
     /// Number of computing threads [default: all that the machine and its quota allow]
     #[arg(long, value_name = "N", value_parser = parse_threads)]
     threads: Option<NonZeroUsize>,
@@ -48,7 +48,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let threads = arguments.threads.unwrap_or_else(all_threads);
     let plan = Plan { threads, tile: arguments.tile.of(input.width, input.height)? };
     // A strategy without threads of its own computes on one, whatever the request is.
-    let computing = strategy.threads().computing_threads(threads);
+    let computing = strategy.threads.computing_threads(threads);
     let mut image = input.image()?;
     let begin = Instant::now();
     let work = input.work(input.width, input.height)?;
@@ -68,7 +68,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     print(&format!(
         "{}\n{}, threads: {computing}, {seconds:.6} s, digest {}\n{stats}{}\nwritten to {}\n",
         input.describe(),
-        strategy.name(),
+        strategy.name,
         image.digest().short(),
         rayweave_output::machine::text(&Machine::here()),
         path.display(),

@@ -14,7 +14,7 @@ fn interrupted_in(call: usize) -> Result<Comparison, CompareError> {
     });
     executor.interrupted_in = call;
     let result =
-        protocol(8, 10, u64::MAX).run(&REFERENCE, &[entry(&QUEUE, 4)], &mut executor, |_| {});
+        protocol(8, 10, u64::MAX).run(REFERENCE, &[entry(QUEUE, 4)], &mut executor, |_| {});
     assert_eq!(executor.calls.len(), call, "it went on");
     result
 }
@@ -31,7 +31,7 @@ fn an_interrupted_comparison_has_the_complete_rounds() {
             assert_eq!(row.samples_ns.len(), 7, "slot {slot}: {}", row.strategy);
         }
     }
-    let all = protocol(8, 10, u64::MAX).run(&REFERENCE, &[], &mut fake(|_, _| right(1)), |_| {});
+    let all = protocol(8, 10, u64::MAX).run(REFERENCE, &[], &mut fake(|_, _| right(1)), |_| {});
     assert!(!all.expect("a reference image").interrupted);
 }
 
@@ -52,7 +52,7 @@ fn too_few_rounds_give_no_table() {
 fn nothing_is_rendered_after_an_interruption() {
     let mut executor = fake(|_, _| right(1));
     executor.interrupted_in = 0;
-    let result = protocol(8, 10, u64::MAX).run(&REFERENCE, &[], &mut executor, |_| {});
+    let result = protocol(8, 10, u64::MAX).run(REFERENCE, &[], &mut executor, |_| {});
     assert!(matches!(result, Err(CompareError::Interrupted(0))), "{result:?}");
     assert_eq!(executor.calls.len(), 0);
 }

@@ -22,7 +22,7 @@ impl Noisy {
 
 impl Executor for Noisy {
     fn render(&mut self, entry: &Entry<'_>) -> Result<Sample, String> {
-        let is_queue = entry.strategy.name() == QUEUE.name();
+        let is_queue = entry.strategy.name == QUEUE.name;
         let slowdown = if is_queue { self.slowdown.ok_or("gone")? } else { 1.0 };
         // A clock rate that swings by 5 % within a minute or so.
         let drift = 1.0 + 0.05 * (self.clock / 10.0).sin();
@@ -45,7 +45,7 @@ fn runs(count: u64, protocol: Protocol, slowdown: f64) -> Vec<Comparison> {
         let mut executor =
             Noisy { random: SplitMix64::new(seed), clock: 0.0, slowdown: Some(slowdown) };
         let protocol = Protocol { seed, ..protocol };
-        protocol.run(&REFERENCE, &[entry(&QUEUE, 1)], &mut executor, |_| {}).expect("an image")
+        protocol.run(REFERENCE, &[entry(QUEUE, 1)], &mut executor, |_| {}).expect("an image")
     };
     (1..=count).map(run).collect()
 }
@@ -111,7 +111,6 @@ fn a_goal_ends_the_rounds_and_keeps_the_coverage() {
 fn a_failed_row_does_not_delay_the_goal() {
     let protocol = Protocol { goal: Some(0.05), max_rounds: 1000, budget: Duration::MAX, ..ROUNDS };
     let mut executor = Noisy { random: SplitMix64::new(1), clock: 0.0, slowdown: None };
-    let run =
-        protocol.run(&REFERENCE, &[entry(&QUEUE, 1)], &mut executor, |_| {}).expect("an image");
+    let run = protocol.run(REFERENCE, &[entry(QUEUE, 1)], &mut executor, |_| {}).expect("an image");
     assert_eq!(run.rounds, 20);
 }

@@ -1,13 +1,13 @@
 //! Tests of the protocol's logic with a fake executor and its clock.
 
 use super::*;
-use crate::fakes::FakeStrategy;
+use crate::fakes::named;
 use crate::statistics::Interval;
 use rayweave_contract::{Image, Threads};
 
-pub(super) static REFERENCE: FakeStrategy = FakeStrategy::named("reference", Threads::None);
-pub(super) static POOL: FakeStrategy = FakeStrategy::named("pool", Threads::Pool);
-pub(super) static QUEUE: FakeStrategy = FakeStrategy::named("queue", Threads::PerRender);
+pub(super) static REFERENCE: Strategy = named("reference", Threads::None);
+pub(super) static POOL: Strategy = named("pool", Threads::Pool);
+pub(super) static QUEUE: Strategy = named("queue", Threads::PerRender);
 
 /// An executor that answers the n-th call of a strategy by a function of its name and n, and
 /// advances its clock by the answer.
@@ -21,7 +21,7 @@ pub(super) struct Fake<F> {
 
 impl<F: FnMut(&'static str, usize) -> Result<Sample, String>> Executor for Fake<F> {
     fn render(&mut self, entry: &Entry<'_>) -> Result<Sample, String> {
-        let name = entry.strategy.name();
+        let name = entry.strategy.name;
         let result = (self.answer)(name, self.calls.iter().filter(|&&call| call == name).count());
         self.calls.push(name);
         self.clock += Duration::from_nanos(result.as_ref().map_or(0, |sample| sample.render_ns));
@@ -53,7 +53,7 @@ pub(super) fn wrong(render_ns: u64) -> Result<Sample, String> {
     right(render_ns).map(|sample| Sample { digest: image(0.5), ..sample })
 }
 
-pub(super) fn entry(strategy: &FakeStrategy, threads: usize) -> Entry<'_> {
+pub(super) fn entry(strategy: Strategy<'static>, threads: usize) -> Entry<'static> {
     Entry { strategy, threads: NonZeroUsize::new(threads).expect("not 0") }
 }
 
@@ -71,8 +71,8 @@ fn run<F: FnMut(&'static str, usize) -> Result<Sample, String>>(
     protocol: Protocol,
     executor: &mut Fake<F>,
 ) -> Comparison {
-    let entries = [entry(&POOL, 2), entry(&QUEUE, 4)];
-    protocol.run(&REFERENCE, &entries, executor, |_| {}).expect("a reference image")
+    let entries = [entry(POOL, 2), entry(QUEUE, 4)];
+    protocol.run(REFERENCE, &entries, executor, |_| {}).expect("a reference image")
 }
 
 #[test]
@@ -99,10 +99,10 @@ fn every_round_measures_every_row_once_in_an_order_that_varies() {
 
 #[test]
 fn rows_are_reference_control_and_contenders() {
-    let entries = [entry(&REFERENCE, 4), entry(&POOL, 2)];
+    let entries = [entry(REFERENCE, 4), entry(POOL, 2)];
     let mut executor = fake(|_, _| right(1));
     let comparison =
-        protocol(1, 1, 0).run(&REFERENCE, &entries, &mut executor, |_| {}).expect("an image");
+        protocol(1, 1, 0).run(REFERENCE, &entries, &mut executor, |_| {}).expect("an image");
     let rows: Vec<_> =
         comparison.rows.iter().map(|row| (&*row.strategy, row.threads, row.control)).collect();
     assert_eq!(rows, [("reference", 1, false), ("reference", 1, true), ("pool", 2, false)]);
@@ -233,7 +233,7 @@ fn without_a_right_reference_there_are_no_figures() {
 #[test]
 fn a_failing_reference_is_an_error() {
     let mut executor = fake(|_, _| Err("broken".to_owned()));
-    let result = protocol(1, 1, 0).run(&REFERENCE, &[], &mut executor, |_| {});
+    let result = protocol(1, 1, 0).run(REFERENCE, &[], &mut executor, |_| {});
     assert_eq!(result.expect_err("no image").to_string(), "the reference failed: broken");
 }
 
@@ -268,7 +268,7 @@ fn progress_only_grows_and_stays_below_one() {
     let mut fractions = Vec::new();
     let mut executor = fake(|_, _| right(10));
     let protocol = protocol(3, 10, 300);
-    protocol.run(&REFERENCE, &[], &mut executor, |p| fractions.push(p.fraction)).expect("an image");
+    protocol.run(REFERENCE, &[], &mut executor, |p| fractions.push(p.fraction)).expect("an image");
     assert!(fractions.is_sorted(), "{fractions:?}");
     assert!(fractions.iter().all(|fraction| (0.0..1.0).contains(fraction)), "{fractions:?}");
     assert!(fractions.last() > Some(&0.8), "{fractions:?}");
@@ -300,10 +300,9 @@ fn rays_are_those_of_a_right_image_in_the_warm_up() {
         ("queue", 2) => Err("tired".to_owned()),
         _ => right(1),
     }));
-    let entries = [entry(&POOL, 2), entry(&QUEUE, 4)];
-    let comparison = protocol(3, 3, u64::MAX)
-        .run(&REFERENCE, &entries, &mut executor, |_| {})
-        .expect("an image");
+    let entries = [entry(POOL, 2), entry(QUEUE, 4)];
+    let comparison =
+        protocol(3, 3, u64::MAX).run(REFERENCE, &entries, &mut executor, |_| {}).expect("an image");
     let rays = comparison.rows.iter().map(|row| (row.primary_rays, row.redundant_rays));
     let counted = |threads| (Some(2 * threads), Some(threads));
     assert!(rays.eq([counted(1), counted(1), (None, None), counted(4)]));

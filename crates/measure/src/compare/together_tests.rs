@@ -14,7 +14,7 @@ struct Part<'a, F> {
 
 impl<F: FnMut(&'static str, usize) -> Result<Sample, String>> Executor for Part<'_, F> {
     fn render(&mut self, entry: &Entry<'_>) -> Result<Sample, String> {
-        let call = (self.number, entry.strategy.name());
+        let call = (self.number, entry.strategy.name);
         let before = self.calls.borrow().iter().filter(|&&earlier| earlier == call).count();
         self.calls.borrow_mut().push(call);
         (self.answer)(call.1, before)
@@ -37,7 +37,7 @@ fn together(
     let mut first = Part { number: 0, calls: &calls, answer: first };
     let mut second = Part { number: 1, calls: &calls, answer: second };
     let comparisons = protocol(rounds, rounds, u64::MAX)
-        .run_together(&REFERENCE, &[entry(&POOL, 2)], &mut [&mut first, &mut second], |_| {})
+        .run_together(REFERENCE, &[entry(POOL, 2)], &mut [&mut first, &mut second], |_| {})
         .expect("a reference image");
     (comparisons.try_into().expect("two comparisons"), calls.into_inner())
 }

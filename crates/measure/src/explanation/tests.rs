@@ -1,24 +1,22 @@
 //! Tests of the explanation with fake strategies on a work that only fills.
 
 use super::*;
-use crate::fakes::{FakeStrategy, GREY, Grey, SIDE, Skip};
+use crate::fakes::{GREY, Grey, SIDE, complete, skip};
 use crate::timeline::{Piece, TimelineLane};
-use rayweave_contract::{Rect, StrategyError, Threads};
+use rayweave_contract::{Rect, RenderError, Strategy, Threads};
 use std::time::Duration;
 
-static ALL: FakeStrategy = FakeStrategy::complete("all", Threads::PerRender);
-static ALONE: FakeStrategy = FakeStrategy::complete("alone", Threads::None);
-static ALL_BUT_ONE: FakeStrategy =
-    FakeStrategy::new("all-but-one", Threads::PerRender, |_| Ok(Skip(1)));
-static REFUSES: FakeStrategy = FakeStrategy::new("refuses", Threads::PerRender, |_| {
-    Err(StrategyError::Unavailable { strategy: "refuses", reason: "not today" })
-});
+static ALL: Strategy = complete("all", Threads::PerRender);
+static ALONE: Strategy = complete("alone", Threads::None);
+static ALL_BUT_ONE: Strategy = Strategy { name: "all-but-one", prepare: &|_| skip(1), ..ALL };
+static REFUSES: Strategy =
+    Strategy { name: "refuses", prepare: &|_| Err(RenderError::Unavailable("not today")), ..ALL };
 
 const EXPERIMENT: ExplainExperiment<'_> = ExplainExperiment {
     work: &Grey,
     size: (5, 4),
     tile: SIDE,
-    reference: &ALL,
+    reference: ALL,
     protocol: Protocol {
         min_rounds: 3,
         max_rounds: 3,
@@ -29,13 +27,13 @@ const EXPERIMENT: ExplainExperiment<'_> = ExplainExperiment {
 };
 
 /// Explains `strategies` with two threads each.
-fn explain(strategies: &[&dyn Strategy]) -> Result<Explanation, ExplainError> {
+fn explain(strategies: &[Strategy<'_>]) -> Result<Explanation, ExplainError> {
     EXPERIMENT.run(strategies, NonZeroUsize::new(2).expect("not 0"), |_| ())
 }
 
 #[test]
 fn each_strategy_has_a_row_and_its_pieces() {
-    let explanation = explain(&[&ALL, &ALL]).expect("explained");
+    let explanation = explain(&[ALL, ALL]).expect("explained");
     assert_eq!((explanation.rounds, explanation.reference), (3, "all"));
     assert_eq!(explanation.digest, Image::filled(5, 4, GREY).expect("an image").digest());
     assert_eq!(explanation.rows.len(), 2);
@@ -53,7 +51,7 @@ fn each_strategy_has_a_row_and_its_pieces() {
 /// Catches a second thread that waits where there is none.
 #[test]
 fn a_strategy_without_threads_has_one_whatever_it_is_given() {
-    let explanation = explain(&[&ALONE]).expect("explained");
+    let explanation = explain(&[ALONE]).expect("explained");
     let row = &explanation.rows[0];
     assert_eq!((row.strategy, row.threads), ("alone", 1));
     assert_eq!(row.lost_ns, row.wall_ns - explanation.reference_ns);
@@ -62,9 +60,9 @@ fn a_strategy_without_threads_has_one_whatever_it_is_given() {
 /// Catches figures of a strategy that gives another image, or none.
 #[test]
 fn a_wrong_strategy_is_not_explained() {
-    let wrong = explain(&[&ALL, &ALL_BUT_ONE]).expect_err("another image");
+    let wrong = explain(&[ALL, ALL_BUT_ONE]).expect_err("another image");
     assert!(matches!(wrong, ExplainError::Different { strategy: "all-but-one" }), "{wrong}");
-    let failed = explain(&[&REFUSES]).expect_err("no image");
+    let failed = explain(&[REFUSES]).expect_err("no image");
     assert_eq!(failed.to_string(), "refuses: unavailable here: not today");
 }
 
@@ -73,7 +71,7 @@ fn a_wrong_strategy_is_not_explained() {
 fn only_shown_pieces_are_kept() {
     let free = RecordingCost { inside_ns: 0.0, outside_ns: 0.0 };
     let kept = |recording| {
-        let mut series = Series::new(&ALL, NonZeroUsize::MIN, recording);
+        let mut series = Series::new(ALL, NonZeroUsize::MIN, recording);
         let mut image = Image::new(5, 4).expect("an image");
         for counts in [false, true] {
             series.render(&EXPERIMENT, free, &mut image, counts).expect("drawn");

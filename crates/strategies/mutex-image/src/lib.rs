@@ -1,72 +1,69 @@
-//! `mutex-image`: the lab report's second way, threads by hand and one lock around the image.
+//! Lesson 3, `mutex-image` and `std-mutex-image`: equal shares of the pixels, one lock.
 //!
-//! * **What it decides**: everything beforehand. Thread `i` of `n` gets the `i`-th of `n` equal
-//!   ranges of pixels; a thread that is done early waits for the slowest.
-//! * **What it costs**: a lock and unlock for every pixel (some 5 ns uncontended, several times
-//!   that when two threads meet), starting the threads within every rendering, and all of the
-//!   imbalance of the image: if one range has the expensive corner, one thread does the work.
-//! * **When it is right**: never for this loop, since pixels are disjoint and need no lock. It is
-//!   here because the report did it, because it is a common first attempt, and because the table
-//!   shows which of its two mistakes costs more.
+//! In the lab: its second version, `std::thread` with a `std::mutex` around the image.
+//!
+//! * **New**: a mutex. It lets threads write to one image that was not split before, and only one
+//!   of them at a time. `thread_team::run` starts and joins threads as lesson 2 does, and stops all
+//!   of them when one fails.
+//! * **What it decides**: everything beforehand. Each thread gets an equal range of the pixels.
+//! * **What it costs**: a lock for every pixel, starting the threads, and all of the imbalance:
+//!   if one range has the expensive corner, one thread does the work.
+//! * **When it is right**: never here, since pixels are disjoint and need no lock. Compare it with
+//!   lesson 2, which has the same imbalance without a lock. `std-mutex-image` has the lock of the
+//!   standard library in place of `parking_lot`'s, to show whether the choice matters.
 
-use parking_lot::Mutex;
-use rayweave_contract::{
-    Granularity, Image, Output, Plan, Policy, Renderer, Scheduling, Strategy, StrategyError,
-    Threads, Tile, Work,
-};
+use rayweave_contract::*;
 use rayweave_thread_team as thread_team;
-use std::num::NonZeroUsize;
+use std::sync::PoisonError;
 
-const NAME: &str = "mutex-image";
-
-/// Hand-spawned threads, a static share of the pixels each, one lock around the image.
-#[derive(Debug)]
-pub struct MutexImage;
-
-impl Strategy for MutexImage {
-    fn name(&self) -> &'static str {
-        NAME
-    }
-
-    fn summary(&self) -> &'static str {
-        "an equal share of the pixels a thread, one mutex around the image, locked for each pixel"
-    }
-
-    fn threads(&self) -> Threads {
-        Threads::PerRender
-    }
-
-    fn policy(&self) -> Policy {
-        Policy {
-            granularity: Granularity::Pixel,
-            scheduling: Scheduling::Static,
-            output: Output::Mutex,
-        }
-    }
-
-    fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
-        Ok(Box::new(StaticShares { threads: plan.threads }))
-    }
-}
-
-struct StaticShares {
-    threads: NonZeroUsize,
-}
-
-impl Renderer for StaticShares {
-    fn render(&mut self, work: &dyn Work, image: &mut Image) -> Result<(), StrategyError> {
-        let (width, pixels) = (image.width() as usize, image.pixels().len());
-        let shares = thread_team::block_partition(pixels, self.threads);
-        let image = Mutex::new(image);
-        thread_team::run(NAME, shares, |team, share| {
-            for index in share {
-                // Computed into memory of the thread's own: the lock is held for the copy only.
-                let (x, y) = ((index % width) as u32, (index / width) as u32);
-                let mut color = [0.0; 3];
-                team.render_tile(work, &mut Tile::pixel(x, y, &mut color))?;
-                image.lock().pixels_mut()[index] = color;
-            }
-            Ok(())
+/// Equal shares of the pixels, `parking_lot`'s mutex.
+pub static STRATEGY: Strategy = Strategy {
+    name: "mutex-image",
+    summary: "equal shares of the pixels, the image locked for each pixel",
+    threads: Threads::PerRender,
+    policy: Policy::new(Granularity::Pixel, Scheduling::Static, Output::Mutex),
+    unavailable: None,
+    prepare: &|plan| {
+        renderer(move |work, image| {
+            let size = (image.width(), image.height());
+            let image = parking_lot::Mutex::new(image);
+            render(plan, work, size, |index, color| image.lock().pixels_mut()[index] = color)
         })
-    }
+    },
+};
+
+/// Equal shares of the pixels, the standard library's mutex.
+pub static WITH_STD: Strategy = Strategy {
+    name: "std-mutex-image",
+    summary: "as mutex-image, with the standard library's lock",
+    prepare: &|plan| {
+        renderer(move |work, image| {
+            let size = (image.width(), image.height());
+            let image = std::sync::Mutex::new(image);
+            render(plan, work, size, |index, color| {
+                // No thread panics while it holds the lock, so it is never poisoned.
+                image.lock().unwrap_or_else(PoisonError::into_inner).pixels_mut()[index] = color;
+            })
+        })
+    },
+    ..STRATEGY
+};
+
+fn render(
+    plan: Plan,
+    work: &dyn Work,
+    (width, height): (u32, u32),
+    store: impl Fn(usize, Rgb) + Sync,
+) -> Result<(), RenderError> {
+    let shares = thread_team::block_partition(width as usize * height as usize, plan.threads);
+    thread_team::run(shares, |team, share| {
+        for index in share {
+            let (x, y) = (index % width as usize, index / width as usize);
+            // The thread's own memory: the lock is held for the copy only.
+            let mut color = [0.0; 3];
+            team.render_tile(work, &mut Tile::pixel(x as u32, y as u32, &mut color))?;
+            store(index, color);
+        }
+        Ok(())
+    })
 }

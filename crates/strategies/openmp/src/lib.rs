@@ -1,41 +1,61 @@
-//! `openmp-static`, `openmp-dynamic`, `openmp-guided`: the lab report's own way, OpenMP's parallel
-//! loop, with the C compiler's OpenMP and the work in Rust.
+//! Lesson 13, `openmp-static`, `openmp-dynamic`, `openmp-guided`: OpenMP's own loop over the tiles.
 //!
-//! * **What it decides**: `static` everything beforehand: each thread gets one of N equal ranges of
-//!   tiles. `dynamic` nothing: a free thread takes the next tile. `guided` begins with large
-//!   chunks, the remaining tiles over N, and ends with single tiles.
-//! * **What it costs**: a C compiler at build time, unsafe code at the border, an uncontended lock
-//!   a tile (some 10 ns: the compiler cannot know that OpenMP gives each index to one thread), and
-//!   threads that are started once. `static` has all of the imbalance of the image, `dynamic` an
-//!   atomic addition a tile, `guided` fewer of them.
-//! * **When it is right**: when a program in C or C++ has OpenMP already, and Rust is called from
-//!   its loops. In Rust alone `tile-queue` or `rayon-tiles` do the same without `unsafe`.
+//! In the lab: its first version. `loops.c` has the three pragmas; the work is in Rust.
+//!
+//! * **New**: a loop in C calls Rust from its threads, at the price of `unsafe` (in `ffi`).
+//! * **What it decides**: `static` deals out equal ranges of the tiles beforehand; with `dynamic` a
+//!   free thread takes the next tile, with `guided` the remaining tiles divided by N.
+//! * **What it costs**: a C compiler at build time, and an uncontended lock for every tile, since
+//!   the compiler cannot know that OpenMP gives each index to one thread.
+//! * **When it is right**: when a program in C or C++ has OpenMP already, and its loops call Rust.
+//!   In Rust alone `tile-queue` and `rayon-tiles` do the same without `unsafe`.
 //!
 //! The caller's thread is one of the N. `OMP_PROC_BIND`, `OMP_PLACES` and `OMP_WAIT_POLICY` work as
-//! ever. The number of threads is the requested one, whatever `OMP_NUM_THREADS` or `OMP_DYNAMIC`
-//! say, and an error where `OMP_THREAD_LIMIT` is lower. Built without OpenMP these strategies are
-//! unavailable, and say what was missing.
+//! in C. The number of threads is the requested one, whatever `OMP_NUM_THREADS` or `OMP_DYNAMIC`
+//! say, and an error where `OMP_THREAD_LIMIT` is lower.
 
-use rayweave_contract::{
-    Granularity, Output, Plan, Policy, Renderer, Scheduling, Strategy, StrategyError, Threads,
-};
+use rayweave_contract::*;
 
 #[cfg(openmp)]
 #[allow(unsafe_code)] // To call C.
 mod ffi;
 #[cfg(openmp)]
-mod renderer;
-
-/// A loop of OpenMP over tiles.
-#[derive(Debug)]
-pub struct OpenMp(Schedule);
+mod team_loop;
 
 /// The loop with `schedule(static)`.
-pub static STATIC: OpenMp = OpenMp(Schedule::Static);
+pub static STATIC: Strategy = strategy(
+    "openmp-static",
+    "OpenMP's loop over the tiles: equal shares, fixed beforehand",
+    Scheduling::Static,
+    &|plan| prepare(Schedule::Static, plan),
+);
 /// The loop with `schedule(dynamic, 1)`.
-pub static DYNAMIC: OpenMp = OpenMp(Schedule::Dynamic);
+pub static DYNAMIC: Strategy = strategy(
+    "openmp-dynamic",
+    "OpenMP's loop over the tiles: the next to a free thread",
+    Scheduling::Dynamic { chunk: 1 },
+    &|plan| prepare(Schedule::Dynamic, plan),
+);
 /// The loop with `schedule(guided, 1)`.
-pub static GUIDED: OpenMp = OpenMp(Schedule::Guided);
+pub static GUIDED: Strategy = strategy(
+    "openmp-guided",
+    "OpenMP's loop over the tiles: the next ones, in shrinking chunks",
+    Scheduling::Guided,
+    &|plan| prepare(Schedule::Guided, plan),
+);
+
+const fn strategy(
+    name: &'static str,
+    summary: &'static str,
+    scheduling: Scheduling,
+    prepare: &'static Prepare<'static>,
+) -> Strategy<'static> {
+    let (threads, policy) =
+        (Threads::Pool, Policy::new(Granularity::Tile, scheduling, Output::InPlace));
+    // The reason why the build script found no OpenMP, if it found none.
+    let unavailable = option_env!("WITHOUT_OPENMP");
+    Strategy { name, summary, threads, policy, unavailable, prepare }
+}
 
 #[derive(Clone, Copy, Debug)]
 enum Schedule {
@@ -44,49 +64,13 @@ enum Schedule {
     Guided,
 }
 
-impl Strategy for OpenMp {
-    fn name(&self) -> &'static str {
-        match self.0 {
-            Schedule::Static => "openmp-static",
-            Schedule::Dynamic => "openmp-dynamic",
-            Schedule::Guided => "openmp-guided",
-        }
-    }
+#[cfg(openmp)]
+fn prepare(schedule: Schedule, plan: Plan) -> Result<RenderFn, RenderError> {
+    let mut team_loop = team_loop::TeamLoop::start(schedule, plan)?;
+    renderer(move |work, image| team_loop.render(work, image))
+}
 
-    fn summary(&self) -> &'static str {
-        match self.0 {
-            Schedule::Static => "OpenMP: an equal range of the tiles a thread",
-            Schedule::Dynamic => "OpenMP: threads take the next tile",
-            Schedule::Guided => "OpenMP: threads take the next tiles, ever fewer",
-        }
-    }
-
-    fn threads(&self) -> Threads {
-        Threads::Pool
-    }
-
-    fn policy(&self) -> Policy {
-        let scheduling = match self.0 {
-            Schedule::Static => Scheduling::Static,
-            Schedule::Dynamic => Scheduling::Dynamic { chunk: 1 },
-            Schedule::Guided => Scheduling::Guided,
-        };
-        Policy { granularity: Granularity::Tile, scheduling, output: Output::InPlace }
-    }
-
-    fn unavailable(&self) -> Option<&'static str> {
-        // The reason why the build script found no OpenMP, if it found none.
-        option_env!("WITHOUT_OPENMP")
-    }
-
-    #[cfg(openmp)]
-    fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
-        Ok(Box::new(renderer::TileLoop::start(self.name(), self.0, plan)?))
-    }
-
-    #[cfg(not(openmp))]
-    fn prepare(&self, _: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
-        let reason = self.unavailable().unwrap_or_default();
-        Err(StrategyError::Unavailable { strategy: self.name(), reason })
-    }
+#[cfg(not(openmp))]
+fn prepare(_: Schedule, _: Plan) -> Result<RenderFn, RenderError> {
+    Err(RenderError::Unavailable("it was built without OpenMP"))
 }

@@ -1,76 +1,31 @@
-//! `rayon-tiles`: a parallel loop over the tiles.
+//! Lesson 10, `rayon-tiles`: a parallel loop over the tiles.
 //!
-//! * **What it decides**: that a tile is the smallest unit of work. rayon splits the list of tiles
-//!   in halves as long as idle threads steal them, never below [`MIN_LEN`].
-//! * **What it costs**: a pool that is started once (some 100 us), cutting the image into tiles,
-//!   and waiting at the end: a range is split while idle threads ask for it, not once it is being
-//!   computed. With all of the cost in one corner the threads that are done wait for that range
-//!   (scenes/loads/corner.toml); `with_max_len` would keep ranges small, for a task a tile.
+//! In the lab: `#pragma omp taskloop` over tiles comes nearest.
+//!
+//! * **New**: a limit of rayon's splitting. A range is halved while idle threads steal from it, not
+//!   once a thread computes it. With all of the cost in one corner, the threads that are done wait
+//!   for that range (`scenes/loads/corner.toml`). `with_max_len(1)` would make every tile a part of
+//!   its own.
+//! * **What it decides**: that a tile is the smallest piece of work.
+//! * **What it costs**: cutting the image into tiles, and waiting for a range that was not split.
 //! * **When it is right**: for moderately uneven work whose pixels share something with their
-//!   neighbours, in a program that has rayon already: one line a loop.
-//!
-//! The pool is its own, with exactly the requested threads: rayon's global pool has as many as the
-//! machine has cores, whatever a caller wants to measure.
+//!   neighbours, in a program that has rayon already.
 
-use rayon::ThreadPool;
-use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
-use rayweave_contract::{
-    Granularity, Image, Output, Plan, Policy, Renderer, Scheduling, Strategy, StrategyError,
-    Threads, Work, render_tile,
-};
-use std::num::NonZeroU32;
+use rayon::prelude::*;
+use rayweave_contract::*;
 
-const NAME: &str = "rayon-tiles";
-
-/// The tiles that rayon does not split further: their size is already the parameter.
-pub const MIN_LEN: usize = 1;
-
-/// A loop of rayon over tiles, in a pool of its own.
-#[derive(Debug)]
-pub struct RayonTiles;
-
-impl Strategy for RayonTiles {
-    fn name(&self) -> &'static str {
-        NAME
-    }
-
-    fn summary(&self) -> &'static str {
-        "one rayon item a tile, halves of the list stolen by idle threads"
-    }
-
-    fn threads(&self) -> Threads {
-        Threads::Pool
-    }
-
-    fn policy(&self) -> Policy {
-        Policy {
-            granularity: Granularity::Tile,
-            scheduling: Scheduling::RecursiveSplit,
-            output: Output::InPlace,
-        }
-    }
-
-    fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
-        Ok(Box::new(TileLoop {
-            pool: rayweave_rayon_pool::build(NAME, plan.threads)?,
-            tile: plan.tile,
-        }))
-    }
-}
-
-struct TileLoop {
-    pool: ThreadPool,
-    tile: NonZeroU32,
-}
-
-impl Renderer for TileLoop {
-    fn render(&mut self, work: &dyn Work, image: &mut Image) -> Result<(), StrategyError> {
-        let mut tiles = image.tiles(self.tile);
-        self.pool.install(|| {
-            tiles
-                .par_iter_mut()
-                .with_min_len(MIN_LEN)
-                .try_for_each(|tile| render_tile(NAME, work, tile))
+/// A loop of rayon over tiles.
+pub static STRATEGY: Strategy = Strategy {
+    name: "rayon-tiles",
+    summary: "rayon's loop over the tiles: idle threads steal halves",
+    threads: Threads::Pool,
+    policy: Policy::new(Granularity::Tile, Scheduling::RecursiveSplit, Output::InPlace),
+    unavailable: None,
+    prepare: &|plan| {
+        let pool = rayweave_rayon_pool::build(plan.threads)?;
+        renderer(move |work, image| {
+            let mut tiles = image.tiles(plan.tile);
+            pool.install(|| tiles.par_iter_mut().try_for_each(|tile| render_tile(work, tile)))
         })
-    }
-}
+    },
+};

@@ -1,75 +1,41 @@
-//! `row-counter`: a free thread takes the next row, by one atomic counter.
+//! Lesson 6, `row-counter`: a free thread takes the next row, by one atomic counter.
 //!
-//! * **What it decides**: nothing beforehand. The counter says which row is next; a thread takes a
-//!   row by adding one to it, so the load balances itself down to a row.
-//! * **What it costs**: an atomic addition and an uncontended lock a row (some 10 ns), starting the
-//!   threads within every rendering, and every sample that a row shares with the rows above and
-//!   below it.
+//! In the lab: `#pragma omp parallel for schedule(dynamic, 1)` over the rows, by hand.
+//!
+//! * **New**: an atomic counter alone balances the load. A thread adds one to it and computes the
+//!   row of that number; an expensive row only means that the others take more of the rest.
+//! * **What it decides**: nothing beforehand.
+//! * **What it costs**: an atomic addition and a lock for every row, and starting the threads. No
+//!   two threads get the same number, but the compiler cannot know. So each row has a lock of its
+//!   own, which no other thread ever takes: the price of safe Rust here.
 //! * **When it is right**: for uneven work with many rows, each of which takes much longer than the
-//!   addition. Tiles share more between their pixels.
-//!
-//! No two threads get the same number, but the compiler cannot know. So each row has a lock of its
-//! own, which no other thread ever takes: its cost is the cost of safe Rust here.
+//!   addition.
 
 use parking_lot::Mutex;
-use rayweave_contract::{
-    Granularity, Image, Output, Plan, Policy, Renderer, Scheduling, Strategy, StrategyError,
-    Threads, Tile, Work,
-};
+use rayweave_contract::*;
 use rayweave_thread_team as thread_team;
 use std::iter;
-use std::num::NonZeroUsize;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-const NAME: &str = "row-counter";
+/// The next row by a counter.
+pub static STRATEGY: Strategy = Strategy {
+    name: "row-counter",
+    summary: "the next row to a free thread, by an atomic counter",
+    threads: Threads::PerRender,
+    policy: Policy::new(Granularity::Row, Scheduling::Dynamic { chunk: 1 }, Output::InPlace),
+    unavailable: None,
+    prepare: &|plan| renderer(move |work, image| render(plan, work, image)),
+};
 
-/// Threads that take the next row by a counter.
-#[derive(Debug)]
-pub struct RowCounter;
-
-impl Strategy for RowCounter {
-    fn name(&self) -> &'static str {
-        NAME
-    }
-
-    fn summary(&self) -> &'static str {
-        "threads take the next row by one atomic counter"
-    }
-
-    fn threads(&self) -> Threads {
-        Threads::PerRender
-    }
-
-    fn policy(&self) -> Policy {
-        Policy {
-            granularity: Granularity::Row,
-            scheduling: Scheduling::Dynamic { chunk: 1 },
-            output: Output::InPlace,
+fn render(plan: Plan, work: &dyn Work, image: &mut Image) -> Result<(), RenderError> {
+    let width = image.width() as usize;
+    let rows = image.pixels_mut().chunks_mut(width).enumerate();
+    let rows: Vec<_> = rows.map(|(y, row)| Mutex::new(Tile::row(0, y as u32, row))).collect();
+    let next = AtomicUsize::new(0);
+    thread_team::run(iter::repeat_n((), plan.threads.get()), |team, ()| {
+        while let Some(row) = rows.get(next.fetch_add(1, Ordering::Relaxed)) {
+            team.render_tile(work, &mut row.lock())?;
         }
-    }
-
-    fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
-        Ok(Box::new(Counter { threads: plan.threads }))
-    }
-}
-
-struct Counter {
-    threads: NonZeroUsize,
-}
-
-impl Renderer for Counter {
-    fn render(&mut self, work: &dyn Work, image: &mut Image) -> Result<(), StrategyError> {
-        let width = image.width() as usize;
-        let rows = image.pixels_mut().chunks_mut(width).enumerate();
-        let rows: Vec<Mutex<Tile<'_>>> =
-            rows.map(|(y, row)| Mutex::new(Tile::row(0, y as u32, row))).collect();
-        let next = AtomicUsize::new(0);
-        let threads = iter::repeat_n((), self.threads.get());
-        thread_team::run(NAME, threads, |team, ()| {
-            while let Some(row) = rows.get(next.fetch_add(1, Ordering::Relaxed)) {
-                team.render_tile(work, &mut row.lock())?;
-            }
-            Ok(())
-        })
-    }
+        Ok(())
+    })
 }

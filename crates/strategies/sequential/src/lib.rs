@@ -1,55 +1,27 @@
-//! `sequential`: the caller's thread computes tile after tile.
+//! Lesson 1, `sequential`: the caller's thread computes tile after tile.
 //!
-//! * **What it decides**: nothing. It is the loop that every other strategy has to beat, and the
-//!   image that every other strategy has to reproduce.
-//! * **What it costs**: no thread, no lock, no queue. The other cores idle.
+//! In the lab: `for (y ...) for (x ...) image[y][x] = color(x, y);`, two loops over the pixels.
+//!
+//! * **New**: the work is a function that fills a tile of the image. A strategy is the loop around
+//!   it: it says which thread computes which tile, and when.
+//! * **What it decides**: nothing. Every other strategy has to be faster, and has to compute the
+//!   same image, bit for bit.
+//! * **What it costs**: nothing but the time of one core. The other cores idle.
 //! * **When it is right**: for an image that takes less time than starting a thread (tens of
 //!   microseconds), or when the cores are busy with other images already.
 
-use rayweave_contract::{
-    Granularity, Image, Output, Plan, Policy, Renderer, Scheduling, Strategy, StrategyError,
-    Threads, Work, render_tile,
+use rayweave_contract::*;
+
+/// One thread, one tile after the other.
+pub static STRATEGY: Strategy = Strategy {
+    name: "sequential",
+    summary: "one thread, tile after tile: the reference",
+    threads: Threads::None,
+    policy: Policy::new(Granularity::Tile, Scheduling::Static, Output::InPlace),
+    unavailable: None,
+    prepare: &|plan| renderer(move |work, image| render(plan, work, image)),
 };
-use std::num::NonZeroU32;
 
-const NAME: &str = "sequential";
-
-/// The caller's thread, tile after tile.
-#[derive(Debug)]
-pub struct Sequential;
-
-impl Strategy for Sequential {
-    fn name(&self) -> &'static str {
-        NAME
-    }
-
-    fn summary(&self) -> &'static str {
-        "one thread, tile after tile: the reference"
-    }
-
-    fn threads(&self) -> Threads {
-        Threads::None
-    }
-
-    fn policy(&self) -> Policy {
-        Policy {
-            granularity: Granularity::Tile,
-            scheduling: Scheduling::Static,
-            output: Output::InPlace,
-        }
-    }
-
-    fn prepare(&self, plan: Plan) -> Result<Box<dyn Renderer>, StrategyError> {
-        Ok(Box::new(TileByTile { tile: plan.tile }))
-    }
-}
-
-struct TileByTile {
-    tile: NonZeroU32,
-}
-
-impl Renderer for TileByTile {
-    fn render(&mut self, work: &dyn Work, image: &mut Image) -> Result<(), StrategyError> {
-        image.tiles(self.tile).iter_mut().try_for_each(|tile| render_tile(NAME, work, tile))
-    }
+fn render(plan: Plan, work: &dyn Work, image: &mut Image) -> Result<(), RenderError> {
+    image.tiles(plan.tile).iter_mut().try_for_each(|tile| render_tile(work, tile))
 }
