@@ -17,7 +17,6 @@ mod fault;
 mod formulas;
 mod material;
 pub mod precision;
-#[cfg(test)]
 mod random;
 mod ray;
 mod render;

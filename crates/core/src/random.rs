@@ -1,8 +1,8 @@
-//! Random points for tests.
+//! Random points, the same in every run.
 
 use glam::DVec3;
 
-/// Returns points in the unit cube, the same in every run: a linear congruential generator (Knuth,
+/// Returns points in the unit cube, 1 excluded: a linear congruential generator (Knuth,
 /// The Art of Computer Programming 2, 1981, 3.3.4).
 pub(crate) fn random_points() -> impl FnMut() -> DVec3 {
     let mut state = 1_u64;

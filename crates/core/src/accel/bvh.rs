@@ -7,6 +7,7 @@
 //! the ray or beyond the closest hit so far, measured along the dominant axis of the ray: along
 //! this axis the `t` of every primitive is within its box.
 
+use crate::random::random_points;
 use crate::ray::{DirectionClass, Ray};
 use crate::shapes::MARGIN;
 use crate::shapes::aabb::Aabb;
@@ -58,6 +59,13 @@ const LARGEST: f64 = 1e12;
 /// rendering's time.
 const ALL_TRIED: f32 = 4096.0;
 
+/// The random enlargements of boxes for the builder, as shares of a box's diagonal. The builder
+/// merges two boxes if each is the other's best partner. Among equal boxes, boxes within each other
+/// or evenly spaced ones all partners are as good, and it would merge one pair a pass: the time
+/// would grow with the square of their number. If the first enlargement gives too deep a hierarchy,
+/// as for thousands of boxes within each other, the second one is tried.
+const ENLARGEMENTS: [f32; 2] = [1.0 / 65536.0, 1.0 / 32.0];
+
 /// Returns the builder's parameters for this many primitives. A packet tries a primitive in about
 /// the time of two boxes, so leaves are small.
 fn build_parameters(primitives: usize) -> BvhBuildParams {
@@ -81,11 +89,12 @@ impl<S: Scalar> Bvh<S> {
         if !whole.reach().lt(S::literal(LARGEST)) {
             return None;
         }
-        let boxes: Vec<BuilderAabb> = bounds.iter().map(rounded).collect();
-        let bvh = build_bvh2(&boxes, build_parameters(boxes.len()), &mut Default::default());
-        if depth(&bvh) > MAX_DEPTH {
-            return None;
-        }
+        let order = shuffled(bounds.len());
+        let bvh = ENLARGEMENTS.iter().find_map(|&share| {
+            let boxes = enlarged(order.iter().map(|&i| &bounds[i as usize]), share);
+            let bvh = build_bvh2(&boxes, build_parameters(boxes.len()), &mut Default::default());
+            (depth(&bvh) <= MAX_DEPTH).then_some(bvh)
+        })?;
         let mut built = Self {
             nodes: Vec::with_capacity(bvh.nodes.len()),
             leaves: Vec::new(),
@@ -99,12 +108,13 @@ impl<S: Scalar> Bvh<S> {
             let (first, content) = if node.is_leaf() {
                 let members =
                     node.first_index as usize..(node.first_index + node.prim_count) as usize;
-                let members = &bvh.primitive_indices[members];
+                let members = bvh.primitive_indices[members].iter();
+                let members: Vec<u32> = members.map(|&i| order[i as usize]).collect();
                 let boxes = members.iter().map(|&member| bounds[member as usize]);
                 if let Some(joined) = boxes.reduce(Aabb::join) {
                     built.nodes[target].bounds = joined;
                 }
-                built.leaves.push(leaf(members));
+                built.leaves.push(leaf(&members));
                 (built.leaves.len() - 1, Content::Leaf)
             } else {
                 let (left, right) = (node.first_index as usize, node.first_index as usize + 1);
@@ -257,11 +267,33 @@ impl<L: Lane> Slabs<L> {
     }
 }
 
-/// Returns the box in the builder's numbers. It only guides the hierarchy's shape, so a rounding
-/// does not matter.
-fn rounded<S: Scalar>(bounds: &Aabb<S>) -> BuilderAabb {
-    let corner = |v: Vector<S>| v.widened().as_vec3a();
-    BuilderAabb::new(corner(bounds.low()), corner(bounds.high()))
+/// Returns the numbers below `count` in a random order, the same in every run. The builder keeps
+/// the order of boxes with equal centres, and orders by size among boxes within each other are as
+/// bad as ties.
+fn shuffled(count: usize) -> Vec<u32> {
+    let mut order: Vec<u32> = (0..count as u32).collect();
+    let mut point = random_points();
+    for last in (1..count).rev() {
+        order.swap(last, (point().x * (last + 1) as f64) as usize);
+    }
+    order
+}
+
+/// Returns boxes in the builder's numbers, each enlarged by up to `share` of its diagonal on every
+/// side, or by a rounding if that is more. They only guide the hierarchy's shape.
+fn enlarged<'a, S: Scalar>(
+    bounds: impl Iterator<Item = &'a Aabb<S>>,
+    share: f32,
+) -> Vec<BuilderAabb> {
+    let mut point = random_points();
+    let enlarge = |bounds: &'a Aabb<S>| {
+        let corner = |v: Vector<S>| v.widened().as_vec3a();
+        let (low, high) = (corner(bounds.low()), corner(bounds.high()));
+        let rounding = low.abs().max(high.abs()).max_element() * f32::EPSILON;
+        let most = ((high - low).length() * share).max(2.0 * rounding);
+        BuilderAabb::new(low - point().as_vec3a() * most, high + point().as_vec3a() * most)
+    };
+    bounds.map(enlarge).collect()
 }
 
 /// Returns the depth of the deepest leaf. The root has depth 1.
@@ -277,4 +309,42 @@ fn depth(bvh: &Bvh2) -> usize {
         }
     }
     deepest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Catches boxes of which the builder merges one pair a pass, so that the hierarchy is too deep,
+    /// or takes minutes.
+    #[test]
+    fn boxes_in_one_place_or_a_row_are_a_hierarchy() {
+        let cube = |x: f64, half: f64| {
+            let corner =
+                |side: f64| Vector::new((x + side) as f32, (side - 5.0) as f32, side as f32);
+            Aabb::new(corner(-half), corner(half))
+        };
+        let arrangements: [(&str, fn(f64) -> (f64, f64)); 4] = [
+            ("equal", |_| (1.0, 0.5)),
+            ("within each other", |i| (1.0, 0.5 + i * 1e-5)),
+            ("in a row", |i| (i, 0.25)),
+            ("smaller than a rounding", |_| (1e6, 1e-6)),
+        ];
+        for (name, arrange) in arrangements {
+            let bounds: Vec<_> = (0..40_000)
+                .map(|i| {
+                    let (x, half) = arrange(f64::from(i));
+                    cube(x, half)
+                })
+                .collect();
+            let mut members = Vec::new();
+            let bvh = Bvh::build(&bounds, |leaf| {
+                members.extend_from_slice(leaf);
+                Leaf::default()
+            });
+            assert!(bvh.is_some_and(|bvh| bvh.leaves() >= 10_000), "{name}");
+            members.sort_unstable();
+            assert!(members.iter().copied().eq(0..40_000), "{name}: every primitive once");
+        }
+    }
 }
