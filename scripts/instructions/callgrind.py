@@ -18,7 +18,7 @@ SCENES = TARGET / "scenes"
 RUSTFLAGS = "-Ctarget-cpu=x86-64-v3"
 
 # The counted function: the loop over the tiles, with everything that it calls.
-LOOP = re.compile(r"_R.*TileByTile.*Renderer6render|_ZN.*TileByTile.*Renderer.*6render17h[0-9a-f]{16}E")
+LOOP = re.compile(r"_R.*rayweave_sequential6render|_ZN19rayweave_sequential6render17h[0-9a-f]{16}E")
 
 
 class Failure(Exception):
