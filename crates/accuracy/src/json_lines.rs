@@ -39,8 +39,10 @@ pub fn read<T: DeserializeOwned>(source: impl BufRead) -> Result<Vec<T>, ReadErr
     for (index, text) in source.lines().enumerate() {
         let line = index + 1;
         let text = text.map_err(|source| ReadError::Io { line, source })?;
+        // Some editors begin a file with a byte order mark.
+        let text = if index == 0 { text.trim_start_matches('\u{feff}') } else { &text };
         if !text.trim().is_empty() {
-            items.push(serde_json::from_str(&text).map_err(|error| content_error(line, &error))?);
+            items.push(serde_json::from_str(text).map_err(|error| content_error(line, &error))?);
         }
     }
     Ok(items)

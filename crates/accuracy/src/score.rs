@@ -9,6 +9,9 @@ use crate::outcomes::Outcome;
 
 /// The number of bits of an f32 after the first.
 const FRACTION_BITS: isize = 23;
+/// The error by condition, in ulps, above which a `t` is far off. Kernels that are right stay below
+/// 1, those with textbook formulas mostly below 100.
+const FAR: f64 = 1000.0;
 /// The exponent of the smallest normal f32.
 const SMALLEST_EXPONENT: isize = -126;
 
@@ -33,6 +36,8 @@ pub struct FamilyScore {
     pub measured: usize,
     /// The number of errors above a thousandth of `t`: the wrong root, or noise.
     pub gross: usize,
+    /// The number of errors above 1,000 ulps times the condition number, which no rounding explains.
+    pub far: usize,
     /// The number of hits with a `t` that is absent or not finite.
     pub non_finite: usize,
     /// The number of meshes that must be hit.
@@ -119,6 +124,7 @@ impl Tally {
             score.gross += usize::from(error.gross);
             self.errors.push(error.ulps);
             let by_condition = error.ulps / case.cond.max(1.0);
+            score.far += usize::from(by_condition > FAR);
             score.max_by_condition = Some(score.max_by_condition.unwrap_or(0.0).max(by_condition));
         }
     }
@@ -267,6 +273,7 @@ mod tests {
             wrong_borderline: 1,
             measured: 3,
             gross: 1,
+            far: 1,
             non_finite: 1,
             meshes: 2,
             leaks: 1,

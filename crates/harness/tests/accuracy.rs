@@ -63,14 +63,34 @@ fn tradeoff_tries_what_the_scene_has() {
 fn malformed_cases_are_named_by_their_line() {
     let folder = folder();
     let corpus = repository().join("crates/accuracy/corpus/hard-cases.jsonl");
-    let first =
-        fs::read_to_string(corpus).expect("the corpus").lines().next().expect("a case").to_owned();
+    let text = fs::read_to_string(corpus).expect("the corpus");
+    let first = text.lines().next().expect("a case");
     fs::write(folder.path().join("bad.jsonl"), format!("{first}\n\n{{\"id\": 3}}\n"))
         .expect("written");
     let message = rayweave(folder.path(), "intersect bad.jsonl --json out.jsonl").expect_refusal();
     assert!(message.starts_with("error: bad.jsonl: line 3, column "), "{message}");
     let message = rayweave(folder.path(), "intersect none.jsonl").expect_refusal();
     assert!(message.starts_with("error: none.jsonl: cannot be read"), "{message}");
+    let hit = text.lines().find(|line| line.contains(r#""hit":true"#)).expect("a hit");
+    let mut far: Value = serde_json::from_str(hit).expect("JSON");
+    far["expect"]["t"] = "1000".into();
+    for (name, text, status, problem) in [
+        ("twice.jsonl", format!("{first}\n{first}\n"), 2, "is used twice"),
+        ("empty.jsonl", "\n".to_owned(), 2, "there is no case in it"),
+        // Some editors begin a file with a byte order mark.
+        ("mark.jsonl", format!("\u{feff}{first}\n"), 0, ""),
+        ("far.jsonl", far.to_string(), 1, "0 wrong, 1 far off"),
+    ] {
+        fs::write(folder.path().join(name), text).expect("written");
+        let run = rayweave(folder.path(), &format!("intersect {name}"));
+        assert_eq!(run.status, status, "{name}: {}", run.stderr);
+        assert!(run.stderr.contains(problem), "{name}: {}", run.stderr);
+        fs::remove_file(folder.path().join(name)).expect("removed");
+    }
+    if cfg!(unix) {
+        let message = rayweave(folder.path(), "intersect /dev/zero").expect_refusal();
+        assert!(message.contains("expected a regular file"), "{message}");
+    }
     // The last two would overwrite their input.
     for arguments in [
         "tradeoff --target-psnr NaN",
@@ -100,7 +120,11 @@ fn intersect_answers_each_case_and_scores_them() {
         let run = rayweave(folder.path(), &format!("intersect {corpus} --precision {precision}"));
         assert_eq!(run.status, 0, "{}", run.stderr);
         assert_eq!(ids(&run.stdout), cases);
-        assert!(run.stderr.contains(": 0 wrong, 0 leaks, 0 not finite"), "{}", run.stderr);
+        assert!(
+            run.stderr.contains(": 0 wrong, 0 far off, 0 leaks, 0 not finite"),
+            "{}",
+            run.stderr
+        );
         assert!(run.stderr.contains("a ray"), "no time: {}", run.stderr);
     }
     let run = rayweave(

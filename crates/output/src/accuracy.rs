@@ -42,10 +42,11 @@ pub fn table(scores: &[FamilyScore], times: &[Option<f64>]) -> String {
     let table = style::table(HEADER, rows, 1..=8);
     let sum = |of: fn(&FamilyScore) -> usize| scores.iter().map(of).sum::<usize>();
     format!(
-        "{table}\n{} cases, {} decidable: {} wrong, {} leaks, {} not finite\n",
+        "{table}\n{} cases, {} decidable: {} wrong, {} far off, {} leaks, {} not finite\n",
         sum(|s| s.cases),
         sum(|s| s.decidable),
         sum(|s| s.wrong),
+        sum(|s| s.far),
         sum(|s| s.leaks),
         sum(|s| s.non_finite)
     )

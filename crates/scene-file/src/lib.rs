@@ -18,7 +18,7 @@ mod wording;
 
 pub use error::{Position, SceneFileError};
 pub use mesh::MAX_MESH_TRIANGLES;
-pub use read_file::MAX_BYTES;
+pub use read_file::{MAX_BYTES, bytes_of};
 pub use scene_file::{ImageSize, MAX_SIDE, SceneFile};
 
 use std::path::Path;
@@ -45,7 +45,7 @@ pub fn report_scene() -> SceneFile {
 /// numbers, corners, a mesh without any triangle, or more than [`MAX_MESH_TRIANGLES`] in all.
 pub fn load(path: &Path) -> Result<SceneFile, SceneFileError> {
     let name = path.display().to_string();
-    let bytes = read_file::bytes_of(path, &name)?;
+    let bytes = bytes_of(path, &name)?;
     parse_in(path.parent(), &bytes, &name)
 }
 

@@ -11,7 +11,11 @@ use crate::error::{Result, SceneFileError};
 pub const MAX_BYTES: u64 = 256 << 20;
 
 /// Returns the contents of a regular file that is not too large. `name` is what errors call it.
-pub(crate) fn bytes_of(path: &Path, name: &str) -> Result<Vec<u8>> {
+///
+/// # Errors
+///
+/// The file cannot be read, is a device, pipe or folder, or is larger than [`MAX_BYTES`].
+pub fn bytes_of(path: &Path, name: &str) -> Result<Vec<u8>> {
     let refusal = |message: &str| SceneFileError::of_file(name, message);
     let unreadable = |error: io::Error| refusal(&format!("cannot be read: {error}"));
     // Asked before opening, because opening a pipe without a writer waits for one.

@@ -7,8 +7,8 @@ use clap::{Args, ValueEnum};
 use rayweave_accuracy::kernel::{self, Prepared};
 use rayweave_accuracy::{FamilyScore, HardCase, json_lines, score};
 use rayweave_core::{Arithmetic, Precision};
-use std::fs::File;
-use std::io::{self, BufReader, Write};
+use std::collections::HashSet;
+use std::io::{self, Write};
 use std::path::PathBuf;
 
 #[derive(Args)]
@@ -40,9 +40,15 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     distinct_files(&[&Some(arguments.cases.clone()), &arguments.json])?;
     let out = arguments.json.as_deref().map(PendingFile::create).transpose()?;
     let name = arguments.cases.display();
-    let file = File::open(&arguments.cases).map_err(|e| format!("{name}: cannot be read: {e}"))?;
-    let cases: Vec<HardCase> =
-        json_lines::read(BufReader::new(file)).map_err(|e| format!("{name}: {e}"))?;
+    let bytes = rayweave_scene_file::bytes_of(&arguments.cases, &name.to_string())
+        .map_err(|e| e.to_string())?;
+    let cases: Vec<HardCase> = json_lines::read(&bytes[..]).map_err(|e| format!("{name}: {e}"))?;
+    if cases.is_empty() {
+        return Err(format!("{name}: there is no case in it: expected one JSON object a line"));
+    }
+    if let Some(id) = id_used_twice(&cases) {
+        return Err(format!("{name}: the id {id:?} is used twice: give each case one of its own"));
+    }
     let precision = match arguments.precision {
         KernelPrecision::F32 => Precision::F32,
         KernelPrecision::F64 => Precision::F64,
@@ -73,7 +79,13 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
             let _ = write!(io::stderr(), "{table}");
         }
     }
-    let wrong =
-        scores.iter().any(|score| score.wrong > 0 || score.leaks > 0 || score.non_finite > 0);
-    Ok(if wrong { Outcome::Failed } else { Outcome::Passed })
+    let faults = |score: &FamilyScore| score.wrong + score.far + score.leaks + score.non_finite;
+    let passed = scores.iter().all(|score| faults(score) == 0);
+    Ok(if passed { Outcome::Passed } else { Outcome::Failed })
+}
+
+/// Returns the first id that an earlier case has too: answers are found by their id.
+fn id_used_twice(cases: &[HardCase]) -> Option<&str> {
+    let mut ids = HashSet::new();
+    cases.iter().map(|case| &*case.id).find(|id| !ids.insert(*id))
 }
