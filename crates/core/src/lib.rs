@@ -29,7 +29,7 @@ mod trace;
 pub use analysis::Analysis;
 pub use cast::Caster;
 pub use execution::{Acceleration, Execution, Lanes};
-pub use render::sample_count::primary_rays;
+pub use render::sample_count::{primary_packets, primary_rays};
 pub use render::tracer::tracer;
 pub use scene::Scene;
 pub use settings::{Arithmetic, Formulas, Precision, Sampling};

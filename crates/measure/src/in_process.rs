@@ -20,8 +20,8 @@ pub struct InProcessExecutor<'a> {
     /// The image of all renderings, so that only the first pays for fresh memory.
     image: Image,
     begin: Instant,
-    /// The number of primary rays of a tile.
-    rays: Option<&'a RayCost<'a>>,
+    /// The numbers of primary rays and of their packets of a tile.
+    counts: Option<[&'a RayCost<'a>; 2]>,
 }
 
 impl<'a> InProcessExecutor<'a> {
@@ -38,15 +38,15 @@ impl<'a> InProcessExecutor<'a> {
         tile: NonZeroU32,
     ) -> Result<Self, ImageError> {
         let image = Image::new(width, height)?;
-        Ok(Self { work, tile, image, begin: Instant::now(), rays: None })
+        Ok(Self { work, tile, image, begin: Instant::now(), counts: None })
     }
 
-    /// Lets the warm-up count primary rays: `rays` returns those of a tile, or of the whole image
-    /// as one tile. Nothing is counted if it returns `None` for one of them. Timed renderings do
-    /// not count.
+    /// Lets the warm-up count primary rays and their packets: `rays` and `packets` return those of
+    /// a tile, or of the whole image as one tile. Nothing is counted if `None` is returned for one
+    /// of them. Timed renderings do not count.
     #[must_use]
-    pub fn counting(self, rays: &'a RayCost<'a>) -> Self {
-        Self { rays: Some(rays), ..self }
+    pub fn counting(self, rays: &'a RayCost<'a>, packets: &'a RayCost<'a>) -> Self {
+        Self { counts: Some([rays, packets]), ..self }
     }
 
     /// Returns the latest image.
@@ -105,13 +105,15 @@ impl Executor for InProcessExecutor<'_> {
     }
 
     fn warm_up(&mut self, entry: &Entry<'_>) -> Result<Sample, String> {
-        let Some(rays) = self.rays else { return self.render(entry) };
+        let Some([rays, packets]) = self.counts else { return self.render(entry) };
         let counter = RayCounter::new(self.work, rays);
-        let sample = self.render_work(&counter, entry)?;
+        let packet_counter = RayCounter::new(&counter, packets);
+        let sample = self.render_work(&packet_counter, entry)?;
+        let primary_packets = packet_counter.finish();
         let whole = Rect { x: 0, y: 0, width: self.image.width(), height: self.image.height() };
         let Some((primary, needed)) = counter.finish().zip(rays(whole)) else { return Ok(sample) };
         let redundant_rays = Some(primary.saturating_sub(needed));
-        Ok(Sample { primary_rays: Some(primary), redundant_rays, ..sample })
+        Ok(Sample { primary_rays: Some(primary), redundant_rays, primary_packets, ..sample })
     }
 
     fn elapsed(&self) -> Duration {
@@ -152,10 +154,11 @@ mod tests {
             asked.fetch_add(1, Ordering::Relaxed);
             Some(u64::from((rect.width + 1) * (rect.height + 1)))
         };
+        let packets = |rect: Rect| Some(u64::from(rect.width));
         let plan = NonZeroU32::new(100).expect("not 0");
         let entry = Entry { strategy: COMPLETE, threads: NonZeroUsize::MIN };
         let mut executor =
-            InProcessExecutor::new(&Grey, 5, 4, plan).expect("an image").counting(&rays);
+            InProcessExecutor::new(&Grey, 5, 4, plan).expect("an image").counting(&rays, &packets);
         // Four tiles of 2 x 2 and two of 1 x 2; the whole image is 5 x 4.
         let (primary, needed) = (4 * 9 + 2 * 6, 6 * 5);
         let counted = executor.warm_up(&entry).expect("rendered");
@@ -163,6 +166,7 @@ mod tests {
             (counted.primary_rays, counted.redundant_rays),
             (Some(primary), Some(primary - needed))
         );
+        assert_eq!(counted.primary_packets, Some(4 * 2 + 2));
         let before = asked.load(Ordering::Relaxed);
         assert_eq!(executor.render(&entry).map(|again| again.digest), Ok(counted.digest));
         assert_eq!(asked.load(Ordering::Relaxed), before, "counted in a timed rendering");

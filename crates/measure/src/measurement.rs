@@ -31,6 +31,8 @@ pub struct Sample {
     /// The primary rays that one tile of the whole image would not have traced, where they were
     /// counted: neighbouring tiles each trace the samples that they could share.
     pub redundant_rays: Option<u64>,
+    /// The packets of primary rays traced, where they were counted.
+    pub primary_packets: Option<u64>,
 }
 
 impl Sample {
@@ -46,6 +48,7 @@ impl Sample {
             cold_digest: None,
             primary_rays: None,
             redundant_rays: None,
+            primary_packets: None,
         }
     }
 }
@@ -102,6 +105,8 @@ pub struct Measurement {
     pub primary_rays: Option<u64>,
     /// The primary rays that one tile of the whole image would not have traced.
     pub redundant_rays: Option<u64>,
+    /// The packets of primary rays traced in the warm-up.
+    pub primary_packets: Option<u64>,
     /// The times to render, in nanoseconds.
     pub samples_ns: Vec<u64>,
     /// The times to prepare the strategy, in nanoseconds.
@@ -145,6 +150,7 @@ impl Measurement {
     pub(crate) fn warm_up(&mut self, result: Result<Sample, String>, expected: Digest) {
         if let Some(sample) = self.verify(result, expected) {
             (self.primary_rays, self.redundant_rays) = (sample.primary_rays, sample.redundant_rays);
+            self.primary_packets = sample.primary_packets;
         }
     }
 

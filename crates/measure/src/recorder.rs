@@ -115,11 +115,12 @@ impl TileRecord {
     }
 }
 
-/// A function that returns the number of primary rays of a tile, or `None` if it is unknown.
+/// A function that returns the number of primary rays of a tile, or of their packets; `None` if it
+/// is unknown.
 pub type RayCost<'a> = dyn Fn(Rect) -> Option<u64> + Sync + 'a;
 
-/// Adds up the primary rays of all tiles that the inner work completes. The addition costs little,
-/// but do not use it for timed runs.
+/// Adds up the primary rays, or the packets, of all tiles that the inner work completes. The
+/// addition costs little, but do not use it for timed runs.
 pub struct RayCounter<'a> {
     work: &'a dyn Work,
     cost: &'a RayCost<'a>,
@@ -135,7 +136,7 @@ impl<'a> RayCounter<'a> {
         Self { work, cost, sum: AtomicU64::new(0), unknown: AtomicBool::new(false) }
     }
 
-    /// Returns the number of rays, or `None` if that of a tile was unknown.
+    /// Returns the sum, or `None` if the number of a tile was unknown.
     #[must_use]
     pub fn finish(self) -> Option<u64> {
         (!self.unknown.into_inner()).then_some(self.sum.into_inner())

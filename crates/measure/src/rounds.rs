@@ -23,16 +23,10 @@ pub struct Protocol {
 }
 
 impl Default for Protocol {
-    /// Returns 8 to 40 rounds in two and a half minutes. Fewer than 6 rounds have no 95 % interval;
+    /// Returns 8 to 40 rounds in a minute. Fewer than 6 rounds have no 95 % interval;
     /// with 8, a narrow interval by chance does not end the measurement.
     fn default() -> Self {
-        Self {
-            min_rounds: 8,
-            max_rounds: 40,
-            budget: Duration::from_secs(150),
-            goal: None,
-            seed: 1,
-        }
+        Self { min_rounds: 8, max_rounds: 40, budget: Duration::from_secs(60), goal: None, seed: 1 }
     }
 }
 

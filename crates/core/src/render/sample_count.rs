@@ -1,6 +1,9 @@
-//! The number of primary rays of a tile, computed without tracing any.
+//! The numbers of primary rays and packets of a tile, computed without tracing any.
 
+use crate::execution::Execution;
+use crate::render::tracer::{BLOCK, block, for_each_run};
 use crate::scene::RenderSettings;
+use std::ops::Range;
 
 /// Returns the number of primary rays that the tracer follows for a tile of `width` x `height`
 /// pixels.
@@ -32,6 +35,45 @@ pub fn primary_rays(
     let points =
         |pixels| if pixels == 0 { 0 } else { lattice_points(pixels, settings.antialiasing) };
     (!settings.adaptive).then(|| points(width) * points(height))
+}
+
+/// Returns the number of packets in which the tracer follows the [primary rays](primary_rays) of a
+/// tile of `width` x `height` pixels. A packet is not always full: a tile of a single pixel with one
+/// sample uses one lane.
+///
+/// Returns `None` for an [adaptive](RenderSettings::adaptive) lattice.
+#[must_use]
+pub fn primary_packets(
+    width: u32,
+    height: u32,
+    settings: &RenderSettings,
+    execution: Execution,
+) -> Option<u64> {
+    let lanes = execution.lanes.count(settings.arithmetic.precision);
+    if settings.has_lattice() && (settings.adaptive || execution.share_samples) {
+        let points = |pixels| lattice_points(pixels, settings.antialiasing) as usize;
+        // A strip of the lattice is traced at once.
+        let strip = |rows: Range<usize>| (points(width) * rows.len()).div_ceil(lanes) as u64;
+        let has_pixels = width > 0 && height > 0;
+        let packets = || if has_pixels { strips(points(height), BLOCK, strip) } else { 0 };
+        return (!settings.adaptive).then(packets);
+    }
+    let samples = settings.rays_per_pixel() as usize;
+    let (side, runs_a_batch) = block(samples);
+    let strip = |rows: Range<usize>| {
+        let mut runs = Vec::new();
+        for_each_run(width as usize, rows, side, |columns, _| runs.push(columns.len() * samples));
+        let batches = runs.chunks(runs_a_batch);
+        batches.map(|batch| batch.iter().sum::<usize>().div_ceil(lanes) as u64).sum()
+    };
+    Some(strips(height as usize, side, strip))
+}
+
+/// Returns the sum of `packets` over the strips of `height` rows, in which strips of equal height
+/// count alike.
+fn strips(height: usize, strip: usize, packets: impl Fn(Range<usize>) -> u64) -> u64 {
+    let of = |rows: usize| if rows == 0 { 0 } else { packets(0..rows) };
+    (height / strip) as u64 * of(strip) + of(height % strip)
 }
 
 /// Returns the number of lattice points along `pixels` pixels, 1 or more, with `density` steps

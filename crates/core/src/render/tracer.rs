@@ -100,6 +100,8 @@ impl<L: Lane, F: Family> Tracer<L, F> {
     ) {
         colors.resize(positions.len().next_multiple_of(L::LANES), self.adaptive);
         for first in (0..positions.len()).step_by(L::LANES) {
+            #[cfg(test)]
+            tests::PACKETS.set(tests::PACKETS.get() + 1);
             let (dx, dy) = positions.load::<L>(first);
             let ray = self.camera.ray(L::splat(x) + dx, L::splat(y) + dy);
             colors
@@ -133,9 +135,7 @@ impl<L: Lane, F: Family> Tracer<L, F> {
         let ys: Vec<L::Scalar> =
             (0..rect.height).map(|y| self.centre(rect.y + y, self.height)).collect();
         let samples = self.filter.positions();
-        // The widest block such that a row of it fits into a batch; one pixel if no block does.
-        let side = (BATCH / samples.len()).clamp(1, BLOCK);
-        let runs_a_batch = (BATCH / (side * samples.len())).max(1);
+        let (side, runs_a_batch) = block(samples.len());
         let (mut runs, mut positions, mut colors) =
             (Vec::new(), SamplePositions::default(), Colors::default());
         for top in (0..ys.len()).step_by(side) {
@@ -223,12 +223,20 @@ impl<L: Lane, F: Family> Tracer<L, F> {
 const BATCH: usize = 1024;
 
 /// The largest side of a block of neighbours: 4 x 4 pixels fill a packet of 16.
-const BLOCK: usize = 4;
+pub(crate) const BLOCK: usize = 4;
+
+/// Returns the side of a block of pixels with `samples` samples each, and the number of its rows in
+/// a batch.
+pub(crate) fn block(samples: usize) -> (usize, usize) {
+    // The widest block such that a row of it fits into a batch; one pixel if no block does.
+    let side = (BATCH / samples).clamp(1, BLOCK);
+    (side, (BATCH / (side * samples)).max(1))
+}
 
 /// Calls `show` with the columns and the row of each row of each block of a strip. The blocks are
 /// `side` columns wide and follow each other, so that consecutive samples are neighbours.
 #[inline(always)]
-fn for_each_run(
+pub(crate) fn for_each_run(
     width: usize,
     strip: Range<usize>,
     side: usize,
@@ -254,5 +262,90 @@ impl<L: Lane, F: Family> Work for Tracer<L, F> {
 impl<L: Lane, F> fmt::Debug for Tracer<L, F> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "Tracer({} x {})", self.width, self.height)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::sample_count::{primary_packets, primary_rays};
+    use crate::scene::{Camera, RenderSettings};
+    use crate::settings::{Precision, Sampling};
+    use glam::DVec3;
+    use rayweave_contract::Image;
+    use std::cell::Cell;
+    use std::num::NonZeroU32;
+
+    thread_local! {
+        /// The number of packets that this thread has traced.
+        pub(super) static PACKETS: Cell<u64> = const { Cell::new(0) };
+    }
+
+    /// Returns a scene without primitives.
+    fn empty() -> Scene {
+        let camera = Camera {
+            position: DVec3::ZERO,
+            look_at: DVec3::Z,
+            up: DVec3::Y,
+            focal_length: 1.0,
+            screen_width: 1.0,
+        };
+        Scene {
+            camera,
+            render: RenderSettings::default(),
+            lights: Vec::new(),
+            materials: Vec::new(),
+            planes: Vec::new(),
+            spheres: Vec::new(),
+            triangles: Vec::new(),
+            cylinders: Vec::new(),
+        }
+    }
+
+    fn settings() -> Vec<RenderSettings> {
+        let samples = [
+            (0, Sampling::Lattice),
+            (1, Sampling::Lattice),
+            (2, Sampling::Lattice),
+            (6, Sampling::Lattice),
+            (9, Sampling::Lattice),
+            (2, Sampling::Importance),
+        ];
+        let settings = |(antialiasing, sampling), precision: Precision| {
+            let arithmetic = precision.into();
+            RenderSettings { antialiasing, sampling, arithmetic, ..RenderSettings::default() }
+        };
+        let precisions = [Precision::F32, Precision::F64];
+        samples
+            .iter()
+            .flat_map(|&way| precisions.map(|precision| settings(way, precision)))
+            .collect()
+    }
+
+    /// Catches a count that does not follow the strips and batches of the tracer.
+    #[test]
+    fn packets_are_counted_as_they_are_traced() {
+        for render in settings() {
+            let scene = Scene { render, ..empty() };
+            for lanes in Lanes::ALL {
+                for share_samples in [false, true] {
+                    let execution = Execution { lanes, share_samples, ..Execution::default() };
+                    for (width, height) in [(1, 1), (7, 1), (1, 9), (8, 4), (13, 11)] {
+                        let work = tracer(&scene, width, height, execution).expect("a scene");
+                        let mut image = Image::new(width, height).expect("an image");
+                        let before = PACKETS.get();
+                        let whole = NonZeroU32::new(13).expect("not 0");
+                        image.tiles(whole).iter_mut().for_each(|tile| work.render(tile));
+                        let traced = PACKETS.get() - before;
+                        let counted = primary_packets(width, height, &scene.render, execution);
+                        let what = format!("{width} x {height}, {execution:?}, {:?}", scene.render);
+                        assert_eq!(counted, Some(traced), "{what}");
+                        let rays = primary_rays(width, height, &scene.render, share_samples);
+                        let lanes = lanes.count(scene.render.arithmetic.precision) as u64;
+                        assert!(rays <= Some(traced * lanes) && traced > 0, "{what}");
+                    }
+                }
+            }
+        }
     }
 }

@@ -7,7 +7,7 @@ use crate::subprocess::{Answer, Job};
 use crate::{Outcome, print};
 use clap::Args;
 use rayweave_contract::Rect;
-use rayweave_core::primary_rays;
+use rayweave_core::{primary_packets, primary_rays};
 use rayweave_measure::InProcessExecutor;
 use rayweave_measure::compare::{Entry, Executor};
 use std::path::Path;
@@ -43,8 +43,10 @@ fn measure(job: &Job) -> Answer {
     let rays = |tile: Rect| {
         primary_rays(tile.width, tile.height, &input.scene.render, input.execution.share_samples)
     };
+    let packets =
+        |tile: Rect| primary_packets(tile.width, tile.height, &input.scene.render, input.execution);
     let executor = InProcessExecutor::new(&*work, width, height, tile);
-    let mut executor = executor.map_err(|e| e.to_string())?.counting(&rays);
+    let mut executor = executor.map_err(|e| e.to_string())?.counting(&rays, &packets);
     if job.count_rays { executor.warm_up(&entry) } else { executor.cold_and_warm(&entry) }
 }
 

@@ -240,7 +240,7 @@ fn a_failing_reference_is_an_error() {
 #[test]
 fn the_least_number_of_rounds_is_enough_for_an_interval() {
     let Protocol { min_rounds, max_rounds, budget, goal, .. } = Protocol::default();
-    assert_eq!((min_rounds, max_rounds, budget, goal), (8, 40, Duration::from_secs(150), None));
+    assert_eq!((min_rounds, max_rounds, budget, goal), (8, 40, Duration::from_secs(60), None));
 }
 
 /// Catches a time limit that ends after the default number of rounds.
