@@ -51,7 +51,7 @@ pub struct Input {
 impl Input {
     /// Loads the scene at `path`, or the lab report's.
     pub fn load(path: Option<&Path>, options: &SceneOptions) -> Result<Self, String> {
-        let share_samples = options.share_samples.single()?;
+        let share_samples = options.share_samples()?;
         Self::load_sharing(path, options, share_samples)
     }
 
@@ -81,7 +81,7 @@ impl Input {
             PrecisionOption::F64 => (Precision::F64, "as requested".to_owned()),
         };
         scene.render.arithmetic = Arithmetic { formulas: options.formulas.into(), precision };
-        let lanes = options.lanes.or(Lanes::suggested(&estimate));
+        let lanes = options.lanes.unwrap_or_default().or(Lanes::suggested(&estimate));
         let execution = Execution { lanes, share_samples, acceleration: options.accel.into() };
         let skipped_triangles = file.skipped_triangles;
         Ok(Self { name, scene, width, height, execution, reason, skipped_triangles })

@@ -43,12 +43,13 @@ pub struct SceneOptions {
     /// Formulas of the tracer
     #[arg(long, value_enum, default_value_t)]
     pub formulas: FormulasOption,
-    /// Rays in a packet with f32; with f64 half as many
-    #[arg(long, value_enum, default_value_t)]
-    pub lanes: LanesOption,
-    /// Trace the samples that neighbouring pixels of a tile have in common only once
-    #[arg(long, value_enum, default_value_t)]
-    pub share_samples: SharingOption,
+    /// Rays in a packet with f32; with f64 half as many [default: auto; 1 with --equal-work on]
+    #[arg(long, value_enum)]
+    pub lanes: Option<LanesOption>,
+    /// Trace the samples that neighbouring pixels of a tile have in common only once [default: on;
+    /// off with --equal-work on]
+    #[arg(long, value_enum)]
+    pub share_samples: Option<SharingOption>,
     /// Interpolate lattice samples where the pixels around them look alike: faster, but it changes
     /// the image
     #[arg(long, value_enum, default_value_t)]
@@ -56,6 +57,16 @@ pub struct SceneOptions {
     /// Let rays skip primitives that they cannot hit; the image is the same
     #[arg(long, alias = "search", value_enum, default_value_t)]
     pub accel: AccelerationOption,
+}
+
+/// The option of the commands that compare threading.
+#[derive(Args)]
+pub struct WorkOption {
+    /// Give all strategies the same work, so that only threading differs: samples are not shared,
+    /// and rays are followed one by one. --share-samples and --lanes each lift their part. Off:
+    /// compute as `render` does
+    #[arg(long, value_enum, default_value = "on")]
+    equal_work: SwitchOption,
 }
 
 /// The positions of the samples around a pixel.
@@ -178,13 +189,35 @@ impl From<AccelerationOption> for Acceleration {
     }
 }
 
-impl SharingOption {
+impl WorkOption {
+    /// Returns the options with the values that equal work gives to those not named.
+    pub fn applied_to(&self, options: &SceneOptions) -> SceneOptions {
+        if self.equal_work == SwitchOption::Off {
+            return *options;
+        }
+        SceneOptions {
+            lanes: options.lanes.or(Some(LanesOption::One)),
+            share_samples: options.share_samples.or(Some(SharingOption::Off)),
+            ..*options
+        }
+    }
+}
+
+impl SceneOptions {
+    /// Returns whether to share samples, for each way to compute the image.
+    pub fn ways_to_share(&self) -> &'static [bool] {
+        match self.share_samples.unwrap_or_default() {
+            SharingOption::On => &[true],
+            SharingOption::Off => &[false],
+            SharingOption::Both => &[true, false],
+        }
+    }
+
     /// Returns whether to share samples, for commands that do not take `both`.
-    pub fn single(self) -> Result<bool, String> {
-        match self {
-            Self::On => Ok(true),
-            Self::Off => Ok(false),
-            Self::Both => {
+    pub fn share_samples(&self) -> Result<bool, String> {
+        match self.ways_to_share() {
+            [way] => Ok(*way),
+            _ => {
                 Err("--share-samples both: only `compare` measures both, use on or off".to_owned())
             }
         }
@@ -240,17 +273,16 @@ pub fn chosen(asked_for: &[Strategy<'static>]) -> Vec<Strategy<'static>> {
     }
 }
 
-/// Returns a line on strategies that are unavailable here, or nothing if none of them is missing.
-pub fn left_out_line(asked_for: &[Strategy<'static>]) -> String {
+/// Returns a line on strategies that are unavailable here, if one of them is missing.
+pub fn left_out_line(asked_for: &[Strategy<'static>]) -> Option<String> {
     let unavailable = STRATEGIES.iter().filter(|strategy| strategy.unavailable.is_some());
     let names: Vec<&str> = unavailable.map(|strategy| strategy.name).collect();
-    if names.is_empty() || !asked_for.is_empty() {
-        return String::new();
-    }
-    format!(
-        "left out because unavailable here: {} (`rayweave strategies` shows the reason)\n",
-        names.join(", ")
-    )
+    (!names.is_empty() && asked_for.is_empty()).then(|| {
+        format!(
+            "left out because unavailable here: {} (`rayweave strategies` shows the reason)",
+            names.join(", ")
+        )
+    })
 }
 
 /// Parses the side of a tile for clap.

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 /// Returns a bar on standard error, hidden if that is not a terminal.
 pub fn bar(total: u64) -> ProgressBar {
-    let style = ProgressStyle::with_template("{bar:32} {percent:>3} %  {msg}  {eta} left")
+    let style = ProgressStyle::with_template("{bar:24} {percent:>3} %  {elapsed}  {msg}")
         .unwrap_or_else(|_| ProgressStyle::default_bar());
     ProgressBar::new(total).with_style(style)
 }

@@ -66,7 +66,7 @@ fn a_scene_may_be_called_like_an_option() {
     fs::copy(program::scene("lab.toml"), folder.path().join("--help.toml")).expect("copied");
     let small = "--size 4x4 --antialiasing 0 --strategy sequential --time-limit 1";
     let text = rayweave(folder.path(), &format!("compare {small} -- --help.toml")).expect_success();
-    assert!(text.starts_with("--help.toml, 4 x 4 pixels"), "{text}");
+    assert!(text.contains("(--help.toml, 4 x 4 pixels, one ray each)"), "{text}");
 }
 
 /// Catches ignored limits: 40 rounds although the goal needs more, or more although it is met.
@@ -95,7 +95,7 @@ fn rounds_follow_the_goal_and_the_limit() {
 #[test]
 fn noise_is_reported() {
     let folder = folder();
-    let arguments = "compare --size 4x4 --strategy sequential --time-limit 1";
+    let arguments = "compare --size 4x4 --strategy sequential --time-limit 1 --full";
     let (text, object) = rayweave_json(folder.path(), arguments);
     assert!(text.contains("\nnoise: "), "{text}");
     let noise = &object["noise"];
@@ -135,7 +135,8 @@ fn compare_writes_what_other_programs_read() {
         let [low, median, high] =
             ["low", "median", "high"].map(|key| result["speedup"][key].as_f64().expect("a number"));
         assert!(low <= median && median <= high);
-        assert!(table.contains(result["strategy"].as_str().expect("a name")));
+        let name = result["strategy"].as_str().expect("a name");
+        assert!(name == "sequential" || table.contains(&format!("\n  {name} ")), "{table}");
     }
     let csv = fs::read_to_string(folder.path().join("a.csv")).expect("the file");
     assert_eq!(csv.lines().count(), 1 + results.len());
@@ -172,8 +173,10 @@ fn rays(results: &[Value], strategy: &str) -> (u64, u64) {
 fn compare_counts_the_rays_of_the_tiles_that_each_strategy_cuts() {
     let folder = folder();
     let run = |options: &str| {
-        let arguments =
-            format!("compare --size 24x16 --threads 2 --tile 10 {options} --time-limit 1");
+        let arguments = format!(
+            "compare --size 24x16 --threads 2 --tile 10 --equal-work off {options} --time-limit 1 \
+             --full"
+        );
         let (table, object) = rayweave_json(folder.path(), &arguments);
         (table, results(&object))
     };
@@ -209,7 +212,7 @@ fn compare_counts_the_rays_of_the_tiles_that_each_strategy_cuts() {
 fn compare_does_not_count_adaptive_samples() {
     let folder = folder();
     let arguments = "compare --size 8x8 --antialiasing 2 --adaptive on --strategy sequential \
-                     --time-limit 1";
+                     --time-limit 1 --full";
     let (table, object) = rayweave_json(folder.path(), arguments);
     assert!(table.contains("antialiasing 2 (adaptive)") && !table.contains("/px"), "{table}");
     let first = &object["results"][0];
@@ -220,7 +223,8 @@ fn compare_does_not_count_adaptive_samples() {
 fn compare_says_how_the_image_is_computed() {
     let folder = folder();
     let run = |options: &str| {
-        let small = "compare --size 8x8 --threads 1 --strategy sequential --time-limit 1";
+        let small = "compare --size 8x8 --threads 1 --strategy sequential --time-limit 1 --full \
+             --equal-work off";
         let (table, object) = rayweave_json(folder.path(), &format!("{small} {options}"));
         let line =
             table.lines().find(|line| line.starts_with("computed: ")).expect("the line").to_owned();
@@ -247,12 +251,9 @@ fn compare_measures_both_ways_to_share_samples() {
                      --time-limit 1 --csv a.csv";
     let (text, object) = rayweave_json(folder.path(), arguments);
     let place = |part: &str| text.find(part).unwrap_or_else(|| panic!("{part}: {text}"));
-    let (shared, unshared) = (place("samples shared"), place("samples not shared"));
-    assert!(
-        shared < unshared && unshared < place("sharing: without it sequential takes "),
-        "{text}"
-    );
-    assert_eq!(text.matches("(control)").count(), 2, "{text}");
+    let (shared, unshared) = (place("Samples shared."), place("Samples not shared."));
+    assert!(shared < unshared && unshared < place("Sharing samples makes sequential "), "{text}");
+    assert_eq!(text.matches("Equal work: ").count(), 1, "{text}");
 
     let all = results(&object);
     let (with, without) = all.split_at(all.len() / 2);
@@ -280,7 +281,7 @@ fn without_a_command_it_compares() {
         &format!("--size 16x16 --threads 2 --strategy {strategy} --time-limit 1"),
     )
     .expect_success();
-    assert!(table.contains(strategy) && table.contains("(control)"), "{table}");
+    assert!(table.contains(strategy) && table.contains("one thread against itself"), "{table}");
 }
 
 #[test]
@@ -305,8 +306,8 @@ fn a_baseline_says_what_has_changed() {
         ("--baseline old.md", "old.md: cannot be a baseline: not the JSON of a comparison"),
         ("--baseline old.json --json old.json", "old.json: is named twice"),
         (
-            "--baseline old.json --share-samples off --json new.json",
-            "old.json: cannot be a baseline: share_samples was true and is false now: use",
+            "--baseline old.json --share-samples on --json new.json",
+            "old.json: cannot be a baseline: share_samples was false and is true now: use",
         ),
         (
             "--baseline old.json --tile 2 --json new.json",
@@ -401,7 +402,7 @@ fn an_interruption_shows_the_complete_rounds() {
     let (run, object) = interrupted_at(1 + 3 + 6 * 3 + 1, "--size 4x4 --antialiasing 0");
     assert_eq!((run.status, run.stderr.as_str()), (130, ""), "{}", run.stdout);
     assert!(
-        run.stdout.contains("; interrupted after ") && !run.stdout.contains("failed"),
+        run.stdout.contains("interrupted after ") && !run.stdout.contains("failed"),
         "{}",
         run.stdout
     );

@@ -8,14 +8,20 @@ mod changes;
 mod csv;
 #[cfg(test)]
 pub(crate) mod fixtures;
+mod lessons;
 mod markdown;
+mod ranking;
 mod scenes;
 mod schema_1;
+mod screen;
+#[cfg(test)]
+mod screen_tests;
 mod table;
 #[cfg(test)]
 mod tests;
 
 pub use changes::{Change, comparable};
+pub use table::column_names;
 pub(crate) use table::complaint;
 
 use crate::json;
@@ -74,10 +80,9 @@ pub struct Record {
     pub disturbed: bool,
     /// The digest of the reference's image, in hexadecimal.
     pub reference_digest: String,
-    /// The largest cost of `threads` equal ranges of tiles over the mean cost; known if several
-    /// scenes were compared.
+    /// The largest cost of `threads` equal ranges of tiles over the mean cost.
     pub imbalance: Option<f64>,
-    /// The largest cost of a tile as a share of the whole; known if several scenes were compared.
+    /// The largest cost of a tile as a share of the whole.
     pub largest_tile: Option<f64>,
     /// The strategy, its samples and figures.
     #[serde(flatten)]
@@ -179,11 +184,24 @@ impl Results {
         if self.has_scenes() { scenes::markdown(self) + &tables } else { tables }
     }
 
-    /// Returns the list as plain text without colours or a newline at the end: one table for each
-    /// subject, or one table with several scenes side by side.
+    /// Returns what a reader wants to know first, as plain text in lines of at most 80 columns:
+    /// which strategies are fastest, a bar for each, and what the figures teach. `notes` come near
+    /// the end. There is no newline at the end.
     #[must_use]
-    pub fn table(&self) -> String {
-        if self.has_scenes() { scenes::text(self) } else { table::text(self) }
+    pub fn screen(&self, notes: &[String]) -> String {
+        screen::text(self, notes)
+    }
+
+    /// Returns the list as plain text without colours or a newline at the end: one table with these
+    /// [columns](column_names) for each subject. Without names all columns are in it, and several
+    /// scenes stand side by side in one table.
+    #[must_use]
+    pub fn table(&self, columns: &[String]) -> String {
+        if self.has_scenes() && columns.is_empty() {
+            scenes::text(self)
+        } else {
+            table::text(self, columns)
+        }
     }
 
     /// Returns whether every strategy rendered the reference's image every time.
@@ -197,9 +215,10 @@ impl Results {
         self.results.chunk_by(|a, b| a.subject == b.subject)
     }
 
-    /// Returns whether scenes stand side by side: the costs of their tiles are known.
+    /// Returns whether several scenes were asked for.
     fn has_scenes(&self) -> bool {
-        self.results.iter().any(|record| record.imbalance.is_some())
+        let scene = |record: &Record| record.subject.scene.clone();
+        self.results.chunk_by(|a, b| scene(a) == scene(b)).count() + self.not_measured.len() > 1
     }
 
     /// Computes the reference's time without shared samples over its time with them, round by
@@ -221,6 +240,12 @@ impl Record {
     fn label(&self) -> String {
         let control = if self.measurement.control { " (control)" } else { "" };
         format!("{}{control}", self.measurement.strategy)
+    }
+
+    /// Returns the share of the lanes that primary rays filled, if they were counted.
+    fn lanes_in_use(&self) -> Option<f64> {
+        let lanes = self.measurement.primary_packets? as f64 * self.subject.lanes as f64;
+        (lanes > 0.0).then_some(self.measurement.primary_rays? as f64 / lanes)
     }
 }
 

@@ -16,3 +16,10 @@ pub fn text(machine: &Machine) -> String {
          {os} {arch}\nprogram: {compiler}, {profile} build{warning}, commit {commit}"
     )
 }
+
+/// Returns the same facts in a few words.
+pub(crate) fn short(machine: &Machine) -> String {
+    let Machine { cpu, available_threads, compiler, profile, commit, .. } = machine;
+    let warning = if profile == "release" { "" } else { ": times mean little" };
+    format!("{cpu}, {available_threads} threads; {compiler}, {profile} build{warning}; {commit}.")
+}

@@ -2,24 +2,28 @@
 
 use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Row, Table, TableStyle};
 use rayweave_measure::Interval;
-use std::ops::RangeInclusive;
 
 const STYLE: TableStyle =
     TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'));
+
+/// The columns that a line of the default output takes at most, so that it fits any terminal.
+pub(crate) const WIDTH: usize = 80;
 
 /// Returns a table without a newline at the end. The columns `numbers` are aligned to the right.
 pub(crate) fn table<R: Into<Row>>(
     header: impl Into<Row>,
     rows: impl Iterator<Item = R>,
-    numbers: RangeInclusive<usize>,
+    numbers: impl IntoIterator<Item = usize>,
 ) -> String {
     let mut table = Table::new();
     // No colours, and no wrapping to the width of the window: a result reads the same everywhere.
     table.force_no_tty().load_style(STYLE).set_content_arrangement(ContentArrangement::Disabled);
     table.set_header(header).add_rows(rows);
-    for (index, column) in table.column_iter_mut().enumerate() {
+    for column in table.column_iter_mut() {
         column.set_padding((0, 1));
-        if numbers.contains(&index) {
+    }
+    for number in numbers {
+        if let Some(column) = table.column_mut(number) {
             column.set_cell_alignment(CellAlignment::Right);
         }
     }
@@ -45,4 +49,34 @@ pub(crate) fn significant(value: f64) -> String {
         _ => 3,
     };
     format!("{value:.decimals$}")
+}
+
+/// Returns `text` in lines of at most 80 columns, without a newline at the end. Lines break between
+/// words; a word that is longer than a line is cut. All lines but the first begin with `indent`.
+#[must_use]
+pub fn wrapped(text: &str, indent: &str) -> String {
+    let length = |text: &str| text.chars().count();
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        let letters: Vec<char> = word.chars().collect();
+        for part in letters.chunks(WIDTH - length(indent)) {
+            let part: String = part.iter().collect();
+            match lines.last_mut() {
+                Some(line) if length(line) + 1 + length(&part) <= WIDTH => {
+                    *line += &format!(" {part}")
+                }
+                Some(_) => lines.push(format!("{indent}{part}")),
+                None => lines.push(part),
+            }
+        }
+    }
+    lines.join("\n")
+}
+
+/// Returns the first characters of `text`, with two dots at the end if there are more than `length`.
+pub(crate) fn clipped(text: &str, length: usize) -> String {
+    if text.chars().count() <= length {
+        return text.to_owned();
+    }
+    text.chars().take(length.saturating_sub(2)).chain("..".chars()).collect()
 }

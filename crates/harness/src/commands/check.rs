@@ -83,7 +83,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
 
     let machine = Machine::here();
     let facts = output::machine::text(&machine);
-    let left_out = left_out_line(&arguments.strategy);
+    let left_out = left_out_line(&arguments.strategy).map(|line| line + "\n").unwrap_or_default();
     let text = output::check::text(&verdict);
     print(&format!("{}\n{facts}\n\n{}\n{left_out}", input.describe(), text.trim_end()))?;
     json.map_or(Ok(()), |file| file.finish(output::check::json(&verdict, &machine).as_bytes()))?;

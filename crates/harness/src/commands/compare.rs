@@ -4,20 +4,21 @@ use crate::files::{PendingFile, distinct_files, named_twice};
 use crate::input::Input;
 use crate::interrupt::Interrupt;
 use crate::options::{
-    SceneOptions, SharingOption, TileOption, all_threads, chosen, distinct, left_out_line,
-    parse_percent, parse_seconds, parse_threads, strategy_parser,
+    SceneOptions, SharingOption, TileOption, WorkOption, all_threads, chosen, distinct,
+    left_out_line, parse_percent, parse_seconds, parse_threads, strategy_parser,
 };
 use crate::progress::Share;
 use crate::subprocess::{Job, SubprocessExecutor};
 use crate::with_noise::with_noise;
 use crate::{Outcome, complain, print};
 use clap::Args;
-use rayweave_contract::Strategy;
+use clap::builder::PossibleValuesParser;
+use rayweave_contract::{Strategy, Tile, Work};
 use rayweave_core::{Acceleration, Arithmetic, Execution};
-use rayweave_measure::compare::{CompareError, Comparison, Entry, Executor};
+use rayweave_measure::compare::{CompareError, CompareProgress, Comparison, Entry, Executor};
 use rayweave_measure::noise::NoiseMonitor;
 use rayweave_measure::{Machine, Measurement, Protocol, TileCosts};
-use rayweave_output::compare::{Record, Results, Subject, comparable};
+use rayweave_output::compare::{Record, Results, Subject, column_names, comparable};
 use std::fs;
 use std::io;
 use std::num::{NonZeroU32, NonZeroUsize};
@@ -47,7 +48,7 @@ pub struct Options {
     #[arg(long, value_name = "PERCENT", value_parser = parse_percent)]
     precision_goal: Option<f64>,
     /// Start no round that would end later than this, after at least 8 rounds [default: 40 rounds
-    /// or 150 seconds, whichever comes first]
+    /// or 60 seconds, whichever comes first]
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
     time_limit: Option<Duration>,
     /// Write the result as JSON, raw samples included
@@ -67,9 +68,39 @@ pub struct Options {
     /// that it wrote
     #[arg(long, value_name = "FILE")]
     baseline: Option<PathBuf>,
+    /// Print the table with all columns
+    #[arg(long, conflicts_with = "columns")]
+    full: bool,
+    /// Print the table with these columns
+    #[arg(
+        long,
+        value_name = "NAME,...",
+        value_delimiter = ',',
+        value_parser = PossibleValuesParser::new(column_names())
+    )]
+    columns: Vec<String>,
+    #[command(flatten)]
+    work: WorkOption,
     #[command(flatten)]
     scene_options: SceneOptions,
 }
+
+impl Options {
+    /// Returns the options of a scene, those not named resolved.
+    fn of_scene(&self, path: Option<&Path>) -> SceneOptions {
+        let options = self.work.applied_to(&self.scene_options);
+        SceneOptions { size: options.size.or(path.is_none().then_some(SIZE)), ..options }
+    }
+
+    /// Returns whether to share samples, for each way to compute the image.
+    fn ways(&self) -> &'static [bool] {
+        self.work.applied_to(&self.scene_options).ways_to_share()
+    }
+}
+
+/// The size of the built-in scene's image: with all strategies, two threads compute the default
+/// rounds of it in a minute.
+const SIZE: (u32, u32) = (250, 250);
 
 /// The folder of `--scenes all`. Each of its scenes separates some strategies from others.
 const LOADS: &str = "scenes/loads";
@@ -86,14 +117,6 @@ pub fn run(scene: Option<&Path>, options: &Options) -> Result<Outcome, String> {
         comparable(baseline, &subjects.collect::<Vec<_>>())
             .map_err(|reason| no_baseline(path, &reason))?;
     }
-    // These lines are printed below the table of a single scene.
-    let notes = match &loaded[..] {
-        [Loaded { input, .. }] => {
-            let skipped = input.skipped_line().map(|line| line + "\n").unwrap_or_default();
-            format!("\n{}\n{skipped}", input.arithmetic_line())
-        }
-        _ => "\n".to_owned(),
-    };
     let (measured, machine, noise) = with_noise(|bar| measure_all(&loaded, options, bar));
     let records = match measured {
         Ok(records) => records,
@@ -111,7 +134,7 @@ pub fn run(scene: Option<&Path>, options: &Options) -> Result<Outcome, String> {
     if let Some(baseline) = &baseline {
         results = results.compared_with(baseline);
     }
-    print(&format!("{}{notes}{}", results.table(), left_out_line(&options.strategy)))?;
+    print(&view(&results, &loaded, options))?;
     files.finish(&results)?;
     let interrupted =
         !results.not_measured.is_empty() || results.results.iter().any(|r| r.interrupted);
@@ -122,11 +145,28 @@ pub fn run(scene: Option<&Path>, options: &Options) -> Result<Outcome, String> {
     })
 }
 
+/// Returns the results as text for a terminal.
+fn view(results: &Results, loaded: &[Loaded], options: &Options) -> String {
+    // These lines concern a single scene.
+    let input = if let [Loaded { input, .. }] = loaded { Some(input) } else { None };
+    let skipped = input.and_then(Input::skipped_line);
+    let left_out = left_out_line(&options.strategy);
+    let is_table = options.full || !options.columns.is_empty();
+    let arithmetic = input.filter(|_| is_table).map(Input::arithmetic_line);
+    let notes = arithmetic.into_iter().chain(skipped).chain(left_out);
+    if is_table {
+        let lines = std::iter::once(results.table(&options.columns)).chain(notes);
+        lines.map(|line| line + "\n").collect()
+    } else {
+        results.screen(&notes.collect::<Vec<_>>()) + "\n"
+    }
+}
+
 /// Returns the scenes to compare on. `None` is the lab report's.
 fn scenes(scene: Option<&Path>, options: &Options) -> Result<Vec<Option<PathBuf>>, String> {
     match &options.scenes[..] {
         [] => Ok(vec![scene.map(Path::to_owned)]),
-        _ if options.scene_options.share_samples.single().is_err() => {
+        _ if options.ways().len() > 1 => {
             Err("--scenes cannot show both ways of sharing: use --share-samples on or off"
                 .to_owned())
         }
@@ -193,15 +233,6 @@ fn no_baseline(path: &Path, reason: &str) -> String {
     format!("{}: cannot be a baseline: {reason}", path.display())
 }
 
-/// Returns whether samples are shared, for each way to compute the image.
-fn ways(options: &Options) -> &'static [bool] {
-    match options.scene_options.share_samples {
-        SharingOption::On => &[true],
-        SharingOption::Off => &[false],
-        SharingOption::Both => &[true, false],
-    }
-}
-
 /// A scene that can be measured with the options.
 struct Loaded {
     /// The scene file; the lab report's scene without one.
@@ -214,8 +245,8 @@ struct Loaded {
 
 /// Loads a scene and checks that it can be measured with these options.
 fn load(path: Option<PathBuf>, options: &Options) -> Result<Loaded, String> {
-    let (scene, ways) = (path.as_deref(), ways(options));
-    let input = Input::load_sharing(scene, &options.scene_options, ways[0])?;
+    let (scene, ways) = (path.as_deref(), options.ways());
+    let input = Input::load_sharing(scene, &options.of_scene(scene), ways[0])?;
     let settings = &input.scene.render;
     if ways.len() > 1 && (!settings.has_lattice() || settings.adaptive) {
         return Err(
@@ -280,11 +311,11 @@ fn measure(
     interrupt: &Interrupt,
     show: impl Fn(f64, String),
 ) -> Result<Vec<Record>, Unmeasured> {
-    let executors = ways(options).iter().map(|&way| {
-        let share_samples = if way { SharingOption::On } else { SharingOption::Off };
+    let executors = options.ways().iter().map(|&way| {
+        let share_samples = Some(if way { SharingOption::On } else { SharingOption::Off });
         let job = Job {
             scene: path.as_ref().map(Into::into),
-            options: SceneOptions { share_samples, ..options.scene_options },
+            options: SceneOptions { share_samples, ..options.of_scene(path.as_deref()) },
             tile: *tile,
             strategy: String::new(),
             threads: NonZeroUsize::MIN,
@@ -296,20 +327,21 @@ fn measure(
     let mut executors: Vec<&mut dyn Executor> =
         executors.iter_mut().map(|executor| executor as &mut dyn Executor).collect();
 
-    let costs = (!options.scenes.is_empty()).then(|| tile_costs(input, *tile)).transpose()?;
     let monitor = NoiseMonitor::start();
     let comparisons = protocol(options, subjects.len(), scenes).run_together(
         rayweave_registry::reference(),
         &entries(options),
         &mut executors,
         // The bar is drawn only here, between the timed spans.
-        |at| show(at.fraction, format!("{}, threads: {}", at.strategy, at.threads)),
+        |at| show(at.fraction, message(at)),
     );
     let comparisons = comparisons.map_err(|error| match error {
         CompareError::Interrupted(_) => Unmeasured::Interrupted(error.to_string()),
         CompareError::Reference(_) => Unmeasured::Failed(error.to_string()),
     })?;
     let disturbed = monitor.finish(Machine::here().logical_cores).disturbed;
+    show(1.0, "costs of the tiles".to_owned());
+    let costs = tile_costs(input, *tile, interrupt)?;
     let records = subjects.iter().zip(comparisons).flat_map(|(subject, comparison)| {
         let Comparison { rows, digest, rounds, interrupted } = comparison;
         let costs = &costs;
@@ -328,10 +360,33 @@ fn measure(
     Ok(records.collect())
 }
 
-/// Measures the cost of each tile.
-fn tile_costs(input: &Input, tile: NonZeroU32) -> Result<TileCosts, String> {
+/// Returns a line on what is measured next.
+fn message(CompareProgress { strategy, threads, rounds, .. }: CompareProgress) -> String {
+    let stage = if rounds == 0 { "warm-up".to_owned() } else { format!("round {rounds}") };
+    format!("{stage}: {strategy}, threads: {threads}")
+}
+
+/// Work that is left undone after an interruption.
+struct InterruptibleWork<'a>(&'a dyn Work, &'a Interrupt);
+
+impl Work for InterruptibleWork<'_> {
+    fn render(&self, tile: &mut Tile<'_>) {
+        if !self.1.happened() {
+            self.0.render(tile);
+        }
+    }
+}
+
+/// Measures the cost of each tile, unless there is an interruption.
+fn tile_costs(
+    input: &Input,
+    tile: NonZeroU32,
+    interrupt: &Interrupt,
+) -> Result<Option<TileCosts>, String> {
     let work = input.work(input.width, input.height)?;
-    TileCosts::of(&*work, input.width, input.height, tile).map_err(|e| e.to_string())
+    let work = InterruptibleWork(&*work, interrupt);
+    let costs = TileCosts::of(&work, input.width, input.height, tile).map_err(|e| e.to_string())?;
+    Ok((!interrupt.happened()).then_some(costs))
 }
 
 /// Returns the strategies and numbers of threads that are compared with the reference.

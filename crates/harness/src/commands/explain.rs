@@ -4,7 +4,8 @@ use crate::files::{PendingFile, distinct_files};
 use crate::image_file::ImageFormat;
 use crate::input::Input;
 use crate::options::{
-    SceneOptions, TileOption, all_threads, distinct, parse_seconds, parse_threads, strategy_parser,
+    SceneOptions, TileOption, WorkOption, all_threads, distinct, parse_seconds, parse_threads,
+    strategy_parser,
 };
 use crate::with_noise::with_noise;
 use crate::{Outcome, print};
@@ -46,6 +47,8 @@ pub struct Arguments {
     #[arg(long, value_name = "FOLDER")]
     pictures: Option<PathBuf>,
     #[command(flatten)]
+    work: WorkOption,
+    #[command(flatten)]
     options: SceneOptions,
 }
 
@@ -63,7 +66,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let [json, trace] = [&arguments.json, &arguments.trace]
         .map(|path| path.as_deref().map(PendingFile::create).transpose());
     let (json, trace) = (json?, trace?);
-    let input = Input::load(arguments.scene.as_deref(), &arguments.options)?;
+    let input =
+        Input::load(arguments.scene.as_deref(), &arguments.work.applied_to(&arguments.options))?;
     let (width, height) = input.recordable_size()?;
     let recommended = [rayweave_registry::recommended()];
     let strategies = distinct(

@@ -3,7 +3,7 @@
 use crate::files::{PendingFile, distinct_files};
 use crate::input::Input;
 use crate::options::{
-    SceneOptions, TileOption, all_threads, chosen, parse_seconds, parse_thread_counts,
+    SceneOptions, TileOption, WorkOption, all_threads, chosen, parse_seconds, parse_thread_counts,
     strategy_parser,
 };
 use crate::with_noise::with_noise;
@@ -36,7 +36,7 @@ pub struct Arguments {
     #[command(flatten)]
     tile: TileOption,
     /// Start no round that would end later than this, after at least 8 rounds. Measuring the
-    /// overheads of threads is extra [default: 40 rounds or 150 seconds, whichever comes first]
+    /// overheads of threads is extra [default: 40 rounds or 60 seconds, whichever comes first]
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
     time_limit: Option<Duration>,
     /// Write the result as JSON
@@ -45,6 +45,8 @@ pub struct Arguments {
     /// Write a plot as SVG
     #[arg(long, value_name = "FILE")]
     svg: Option<PathBuf>,
+    #[command(flatten)]
+    work: WorkOption,
     #[command(flatten)]
     options: SceneOptions,
 }
@@ -56,7 +58,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     distinct_files(&[&arguments.scene, &arguments.json, &arguments.svg])?;
     let json = arguments.json.as_deref().map(PendingFile::create).transpose()?;
     let svg = arguments.svg.as_deref().map(PendingFile::create).transpose()?;
-    let input = Input::load(arguments.scene.as_deref(), &arguments.options)?;
+    let input =
+        Input::load(arguments.scene.as_deref(), &arguments.work.applied_to(&arguments.options))?;
     let (width, height) = input.recordable_size()?;
     let tile = arguments.tile.of(width, height)?;
     let strategies = chosen(&arguments.strategy);

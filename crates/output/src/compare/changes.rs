@@ -192,8 +192,11 @@ const HEADER: [&str; 5] = [
     "verdict",
 ];
 
-/// Returns the table of changes, if there is an earlier list.
-pub(super) fn text(results: &Results) -> Option<String> {
+/// The longest name of a strategy that the table shows whole.
+const NAME: usize = 19;
+
+/// Returns the table of changes, if there is an earlier list. `shown` is a ratio as text.
+pub(super) fn text(results: &Results, shown: fn(Interval) -> String) -> Option<String> {
     let changes = results.changes.as_ref()?;
     let mut lines = vec![String::new(), "changes since the baseline".to_owned()];
     let groups =
@@ -203,7 +206,7 @@ pub(super) fn text(results: &Results) -> Option<String> {
         let samples = if group[0].share_samples { "shared" } else { "not shared" };
         lines.push(String::new());
         lines.extend(several.then(|| format!("{}, samples {samples}", group[0].scene)));
-        lines.push(style::table(HEADER, group.iter().map(cells), 1..=3));
+        lines.push(style::table(HEADER, group.iter().map(|change| cells(change, shown)), 1..=3));
     }
     lines.push(
         "\nTwo runs also differ by drift. The verdict therefore uses the time relative to the \
@@ -215,12 +218,10 @@ pub(super) fn text(results: &Results) -> Option<String> {
     Some(lines.join("\n"))
 }
 
-fn cells(change: &Change) -> [String; HEADER.len()] {
-    let cell = |interval: Option<Interval>| {
-        interval.map_or_else(|| "-".to_owned(), style::precise_interval)
-    };
+fn cells(change: &Change, shown: fn(Interval) -> String) -> [String; HEADER.len()] {
+    let cell = |interval: Option<Interval>| interval.map_or_else(|| "-".to_owned(), shown);
     [
-        change.strategy.clone(),
+        style::clipped(&change.strategy, NAME),
         change.threads.to_string(),
         cell(change.time),
         cell(change.relative_time),
@@ -267,7 +268,7 @@ mod tests {
     #[test]
     fn changes_for_people_and_programs() {
         let now = slowed(1.0, 1.1).compared_with(&slowed(1.0, 1.0));
-        let text = now.table();
+        let text = now.table(&[]);
         let line = text.lines().find(|line| line.starts_with("pool") && line.ends_with("slower"));
         assert!(line.is_some_and(|line| line.contains("1.100 [1.0")), "{text}");
         assert!(!text.contains("ANOTHER IMAGE"), "{text}");
@@ -278,7 +279,7 @@ mod tests {
 
         let mut then = slowed(1.0, 1.0);
         then.results[0].reference_digest = "another".to_owned();
-        let told = slowed(1.0, 1.0).compared_with(&then).table();
+        let told = slowed(1.0, 1.0).compared_with(&then).table(&[]);
         assert!(told.contains("ANOTHER IMAGE of room"), "{told}");
     }
 
@@ -295,7 +296,7 @@ mod tests {
             run
         };
         let told = |then: &Results, now: Results| {
-            let text = now.compared_with(then).table();
+            let text = now.compared_with(then).table(&[]);
             let lines = text.lines().filter(|line| line.contains("do not trust the verdicts"));
             lines.map(str::to_owned).collect::<Vec<_>>()
         };

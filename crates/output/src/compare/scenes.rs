@@ -1,12 +1,12 @@
 //! The list as one table with a column for each scene, and a sentence for each scene on which
 //! strategy wins and why.
 
+use super::lessons::EVEN;
 use super::{Record, Results, changes, markdown, scene_name};
-use crate::{machine, style};
+use crate::machine;
+use crate::style::{self, clipped, wrapped};
 use rayweave_contract::{Granularity, Scheduling};
-
-/// The imbalance below which the cost counts as even.
-const EVEN: f64 = 1.1;
+use rayweave_measure::Interval;
 
 /// The time of an image below which starting a few threads takes a percent of it or more.
 const FREE_NS: u64 = 10_000_000;
@@ -15,7 +15,7 @@ pub(super) fn text(results: &Results) -> String {
     let groups: Vec<&[Record]> = results.groups().collect();
     let header = ["strategy".to_owned(), "threads".to_owned()];
     let header: Vec<String> = header.into_iter().chain(names(&groups)).collect();
-    let rows = rows(&groups, |best| format!("* {best}"));
+    let rows = rows(&groups, style::interval, |best| format!("* {best}"));
     let mut lines = vec![
         "speed-up over the reference of the same scene [95 % interval]; *: highest of the scene"
             .to_owned(),
@@ -25,14 +25,43 @@ pub(super) fn text(results: &Results) -> String {
     ];
     lines.extend(notes(results, &groups));
     lines.push(machine::text(&results.machine));
-    lines.extend(changes::text(results));
+    lines.extend(changes::text(results, style::precise_interval));
     lines.join("\n")
+}
+
+/// The most scenes that stand side by side in lines of 80 columns.
+const MOST_SCENES: usize = 5;
+
+/// The longest names of a strategy and of a scene that are shown whole.
+const NAMES: (usize, usize) = (20, 8);
+
+/// Returns the lines of the same table without intervals, and the sentences. No line is longer than
+/// 80 columns.
+pub(super) fn screen(results: &Results) -> Vec<String> {
+    let groups: Vec<&[Record]> = results.groups().collect();
+    let mut lines: Vec<String> = groups.iter().map(|group| wrapped(&why(group), "  ")).collect();
+    lines.extend([String::new(), "speed-up over one thread; *: highest of the scene".to_owned()]);
+    for groups in groups.chunks(MOST_SCENES) {
+        let names = names(groups).into_iter().map(|name| clipped(&name, NAMES.1));
+        let header: Vec<String> = ["strategy".to_owned()].into_iter().chain(names).collect();
+        let rows =
+            rows(groups, |speedup| format!("{:.2}", speedup.median), |best| format!("*{best}"));
+        let rows = rows.into_iter().map(|row| {
+            let [strategy, threads, cells @ ..] = &row[..] else { return row };
+            let name = format!("{} x{threads}", clipped(strategy, NAMES.0));
+            [&[name], cells].concat()
+        });
+        lines.push(style::table(header, rows, 1..=groups.len()));
+        lines.push(String::new());
+    }
+    lines.extend(doubts(results, &groups).iter().map(|line| wrapped(line, "")));
+    lines
 }
 
 /// Returns the same table and sentences in Markdown.
 pub(super) fn markdown(results: &Results) -> String {
     let groups: Vec<&[Record]> = results.groups().collect();
-    let rows = rows(&groups, |best| format!("**{best}**"));
+    let rows = rows(&groups, style::interval, |best| format!("**{best}**"));
     markdown::summary(&names(&groups), &rows, &notes(results, &groups)) + "\n"
 }
 
@@ -42,7 +71,11 @@ fn names(groups: &[&[Record]]) -> Vec<String> {
 
 /// Returns a sentence for each scene, and the reasons to doubt its figures.
 fn notes(results: &Results, groups: &[&[Record]]) -> Vec<String> {
-    let mut lines: Vec<String> = groups.iter().map(|group| why(group)).collect();
+    groups.iter().map(|group| why(group)).chain(doubts(results, groups)).collect()
+}
+
+fn doubts(results: &Results, groups: &[&[Record]]) -> Vec<String> {
+    let mut lines = Vec::new();
     let disturbed = groups.iter().filter(|group| group[0].disturbed);
     let disturbed: Vec<&str> = disturbed.map(|group| scene_name(&group[0])).collect();
     if !disturbed.is_empty() {
@@ -63,9 +96,13 @@ fn notes(results: &Results, groups: &[&[Record]]) -> Vec<String> {
     lines
 }
 
-/// Returns name, threads and speed-up in each scene of each row. `marked` marks the highest
-/// speed-up of a scene.
-fn rows(groups: &[&[Record]], marked: impl Fn(String) -> String) -> Vec<Vec<String>> {
+/// Returns name, threads and speed-up in each scene of each row. `shown` is a speed-up as text, and
+/// `marked` marks the highest of a scene.
+fn rows(
+    groups: &[&[Record]],
+    shown: impl Fn(Interval) -> String,
+    marked: impl Fn(String) -> String,
+) -> Vec<Vec<String>> {
     let cell = |group: &&[Record], wanted: &Record| {
         let alike = |record: &&Record| {
             record.label() == wanted.label()
@@ -76,7 +113,7 @@ fn rows(groups: &[&[Record]], marked: impl Fn(String) -> String) -> Vec<Vec<Stri
             return "failed".to_owned();
         };
         let best = winner(group).is_some_and(|best| alike(&best));
-        if best { marked(style::interval(speedup)) } else { style::interval(speedup) }
+        if best { marked(shown(speedup)) } else { shown(speedup) }
     };
     let first = groups.first().copied().unwrap_or_default();
     let row = |record: &Record| {
@@ -184,7 +221,6 @@ fn scheduling(word: &str) -> &'static str {
 mod tests {
     use super::super::fixtures::{machine, noise, records};
     use super::*;
-    use rayweave_measure::Interval;
 
     /// Returns the made-up list on two scenes: an even one, and one with three quarters of the cost
     /// in one tile, where the pool loses to the reference.
@@ -211,7 +247,7 @@ mod tests {
 
     #[test]
     fn the_winner_is_marked_and_the_reason_told() {
-        let text = two_scenes().table();
+        let text = two_scenes().table(&[]);
         let line = |start: &str| {
             text.lines().find(|line| line.starts_with(start)).unwrap_or_else(|| panic!("{text}"))
         };
@@ -261,7 +297,7 @@ mod tests {
     #[test]
     fn markdown_begins_with_who_wins_where() {
         let markdown = two_scenes().markdown();
-        let (text, lines) = (two_scenes().table(), markdown.lines().collect::<Vec<_>>());
+        let (text, lines) = (two_scenes().table(&[]), markdown.lines().collect::<Vec<_>>());
         let head = "speed-up over the reference of the same scene [95 % interval]; the highest of \
                     a scene in bold";
         assert_eq!(lines[..2], [head, ""]);

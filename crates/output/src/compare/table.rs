@@ -4,32 +4,83 @@ use super::{Record, Results, Subject, changes, control, short};
 use crate::{machine, noise, style};
 use rayweave_measure::{Interval, Measurement};
 
-const HEADER: [&str; 10] = [
-    "strategy",
-    "threads",
-    "median\nms",
-    "cold\nms",
-    "speed-up\n[95 % interval]",
-    "efficiency",
-    "serial\nfraction",
-    "rays",
-    "threads\nstart",
-    "identical",
+/// A column of the table.
+struct Column {
+    /// The name on the command line.
+    name: &'static str,
+    /// The heading, with up to two lines.
+    heading: &'static str,
+    /// True if the column lines up at its right.
+    is_number: bool,
+    /// Returns the cell of a record, or `None` without a figure.
+    cell: fn(&Record) -> Option<String>,
+}
+
+/// All columns in their order.
+const COLUMNS: [Column; 11] = [
+    column("strategy", "strategy", false, |record| Some(record.label())),
+    column("threads", "threads", true, |record| Some(record.measurement.threads.to_string())),
+    column("median", "median\nms", true, |record| record.measurement.median_ns.map(milliseconds)),
+    column("cold", "cold\nms", true, |record| record.measurement.cold_ns.map(milliseconds)),
+    column("speed-up", "speed-up\n[95 % interval]", true, |record| {
+        record.measurement.speedup.map(style::interval)
+    }),
+    column("efficiency", "efficiency", true, |record| record.measurement.efficiency.map(percent)),
+    column("serial", "serial\nfraction", true, |record| {
+        record.measurement.serial_fraction.map(|fraction| format!("{fraction:.3}"))
+    }),
+    column("rays", "rays", true, |record| {
+        let Measurement { primary_rays, redundant_rays, .. } = record.measurement;
+        Some(rays_a_pixel(&record.subject, primary_rays?, redundant_rays?))
+    }),
+    column("lanes", "lanes\nin use", true, |record| record.lanes_in_use().map(percent)),
+    column("start", "threads\nstart", false, |record| match &*record.measurement.starts_threads {
+        "pool" => {
+            record.measurement.prepare_ns.map(|ns| format!("before: {:.0} us", ns as f64 / 1e3))
+        }
+        "per-render" => Some("in the time".to_owned()),
+        _ => None,
+    }),
+    column("identical", "identical", false, |record| {
+        let identical = match (&record.measurement.error, record.measurement.identical) {
+            (Some(_), _) => "failed",
+            (None, true) => "yes",
+            (None, false) => "NO",
+        };
+        Some(identical.to_owned())
+    }),
 ];
 
-/// The columns of numbers, which line up at their right.
-const NUMBERS: std::ops::RangeInclusive<usize> = 1..=7;
+const fn column(
+    name: &'static str,
+    heading: &'static str,
+    is_number: bool,
+    cell: fn(&Record) -> Option<String>,
+) -> Column {
+    Column { name, heading, is_number, cell }
+}
+
+/// Returns the names of all columns of [`Results::table`].
+pub fn column_names() -> impl Iterator<Item = &'static str> {
+    COLUMNS.iter().map(|column| column.name)
+}
 
 /// The distance from 1 that the control's interval may reach before the table warns.
-const TELLING: f64 = 0.05;
+pub(super) const TELLING: f64 = 0.05;
 
 /// The cell without a figure.
 const NONE: &str = "-";
 
-pub(super) fn text(results: &Results) -> String {
+/// Returns the tables with these columns, or with all if none is named.
+pub(super) fn text(results: &Results, names: &[String]) -> String {
+    let mut columns: Vec<&Column> =
+        names.iter().filter_map(|name| COLUMNS.iter().find(|column| column.name == name)).collect();
+    if columns.is_empty() {
+        columns = COLUMNS.iter().collect();
+    }
     let mut lines: Vec<String> = Vec::new();
     for group in results.groups() {
-        lines.extend(measured(group));
+        lines.extend(measured(group, &columns));
         lines.extend(control(group).map(|interval| control_line(group, interval)));
         lines.extend(results.precision_goal.map(|goal| goal_line(group, goal)));
         lines.push(String::new());
@@ -44,13 +95,18 @@ pub(super) fn text(results: &Results) -> String {
     }));
     lines.push(noise::text(&results.noise));
     lines.push(machine::text(&results.machine));
-    lines.extend(changes::text(results));
+    lines.extend(changes::text(results, style::precise_interval));
     lines.join("\n")
 }
 
 /// Returns the heading of a subject's table, the table, and what concerns this table alone.
-fn measured(group: &[Record]) -> Vec<String> {
-    let table = style::table(HEADER, group.iter().map(cells), NUMBERS);
+fn measured(group: &[Record], columns: &[&Column]) -> Vec<String> {
+    let cell = |column: &&Column, record| (column.cell)(record).unwrap_or_else(|| NONE.to_owned());
+    let rows = group
+        .iter()
+        .map(|record| columns.iter().map(|column| cell(column, record)).collect::<Vec<_>>());
+    let numbers = (0..columns.len()).filter(|&place| columns[place].is_number);
+    let table = style::table(columns.iter().map(|column| column.heading), rows, numbers);
     let mut lines = vec![heading(group), String::new(), table, String::new()];
     lines.extend(group.iter().filter_map(|record| complaint(&record.measurement)));
     lines.push(computed(&group[0].subject));
@@ -78,32 +134,8 @@ pub(super) fn heading(group: &[Record]) -> String {
     )
 }
 
-fn cells(record: &Record) -> [String; HEADER.len()] {
-    let row = &record.measurement;
-    let figure = |text: Option<String>| text.unwrap_or_else(|| NONE.to_owned());
-    let identical = match (&row.error, row.identical) {
-        (Some(_), _) => "failed",
-        (None, true) => "yes",
-        (None, false) => "NO",
-    };
-    let start = match &*row.starts_threads {
-        "pool" => row.prepare_ns.map(|ns| format!("before: {:.0} us", ns as f64 / 1e3)),
-        "per-render" => Some("in the time".to_owned()),
-        _ => None,
-    };
-    let rays = row.primary_rays.zip(row.redundant_rays);
-    [
-        record.label(),
-        row.threads.to_string(),
-        figure(row.median_ns.map(milliseconds)),
-        figure(row.cold_ns.map(milliseconds)),
-        figure(row.speedup.map(style::interval)),
-        figure(row.efficiency.map(|efficiency| format!("{:.0} %", efficiency * 100.0))),
-        figure(row.serial_fraction.map(|fraction| format!("{fraction:.3}"))),
-        figure(rays.map(|(primary, redundant)| rays_a_pixel(&record.subject, primary, redundant))),
-        figure(start),
-        identical.to_owned(),
-    ]
+fn percent(share: f64) -> String {
+    format!("{:.0} %", share * 100.0)
 }
 
 /// Returns a time in milliseconds with no more digits than a measurement supports.
@@ -162,7 +194,7 @@ pub(crate) fn complaint(row: &Measurement) -> Option<String> {
 }
 
 /// Returns the meaning of the columns.
-fn legend(records: &[Record]) -> [String; 4] {
+fn legend(records: &[Record]) -> [String; 5] {
     let reference = reference(records);
     [
         "median: time of the second rendering in each process, without threads started \"before\"."
@@ -174,6 +206,8 @@ fn legend(records: &[Record]) -> [String; 4] {
              Serial fraction: Karp and Flatt."
         ),
         "rays: primary rays, counted in the warm-up; +: more than the image needs as a single tile."
+            .to_owned(),
+        "lanes in use: share of the lanes that primary rays filled, counted in the warm-up."
             .to_owned(),
     ]
 }
@@ -208,7 +242,7 @@ fn control_line(group: &[Record], control: Interval) -> String {
 }
 
 /// Returns whether the rows are as precise as was asked for.
-fn goal_line(group: &[Record], goal: f64) -> String {
+pub(super) fn goal_line(group: &[Record], goal: f64) -> String {
     let speedups = group.iter().filter_map(|record| record.measurement.speedup);
     match speedups.filter(|interval| interval.relative_half_width() > goal).count() {
         0 => format!("goal: each speed-up is known to +-{:.3} % or better.", goal * 100.0),
@@ -223,7 +257,7 @@ fn goal_line(group: &[Record], goal: f64) -> String {
     }
 }
 
-fn reference(group: &[Record]) -> &str {
+pub(super) fn reference(group: &[Record]) -> &str {
     group.first().map_or("the reference", |record| &record.measurement.strategy)
 }
 

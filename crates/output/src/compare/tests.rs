@@ -19,6 +19,7 @@ fn both() -> Results {
         subject.share_samples = false;
         row.samples_ns.iter_mut().for_each(|ns| *ns *= 3);
         (row.primary_rays, row.redundant_rays) = (Some(5_000_000), Some(0));
+        row.primary_packets = Some(625_000);
     }
     unshared[2].measurement = failed(unshared[2].measurement.clone(), "gone");
     Results::new(machine(), noise(), [records(), unshared].concat())
@@ -33,6 +34,7 @@ median: time of the second rendering in each process, without threads started "b
 cold: preparation and first rendering in each process. All images are verified, untimed.
 speed-up: time of sequential over the row's, median over rounds. Serial fraction: Karp and Flatt.
 rays: primary rays, counted in the warm-up; +: more than the image needs as a single tile.
+lanes in use: share of the lanes that primary rays filled, counted in the warm-up.
 "#;
 
 const SHARING: &str =
@@ -47,14 +49,14 @@ program: rustc 1.0, release build, commit 0123456789ab";
 #[test]
 fn tables_as_a_whole() {
     let expected = format!("{TABLE}{LEGEND}{MACHINE}");
-    assert_eq!(without_digests(&results().table()), expected);
+    assert_eq!(without_digests(&results().table(&[])), expected);
     let expected = format!("{TABLE}{UNSHARED}{LEGEND}{SHARING}{MACHINE}");
-    assert_eq!(without_digests(&both().table()), expected);
+    assert_eq!(without_digests(&both().table(&[])), expected);
 }
 
 #[test]
 fn table_is_plain_text() {
-    let text = both().table();
+    let text = both().table(&[]);
     assert!(text.chars().all(|c| c == '\n' || !c.is_control()), "{text:?}");
     assert!(text.lines().all(|line| line == line.trim_end()), "{text}");
 }
@@ -75,7 +77,7 @@ fn doubtful_figures_are_reported() {
         let mut results = results();
         results.precision_goal = goal;
         results.results.iter_mut().for_each(|record| record.interrupted = interrupted);
-        results.table()
+        results.table(&[])
     };
     assert!(!goal(None, false).contains("goal:"));
     let met = "goal: each speed-up is known to +-6.000 % or better.";
@@ -114,7 +116,7 @@ fn json_has_the_keys_that_stay() {
         "median_ns": 1025641026, "speedup": SPEEDUP, "efficiency": 0.97499999965875,
         "serial_fraction": 0.0256, "prepare_ns": 84600,
         "cold_ns": 1282051280, "cold_speedup": COLD, "cpu_ns": 1948717938,
-        "primary_rays": 876000, "redundant_rays": 76000,
+        "primary_rays": 876000, "redundant_rays": 76000, "primary_packets": 113000,
         "samples_ns": [1025641026, 1025641026], "prepare_samples_ns": [84600, 84600],
         "cold_samples_ns": [1282051280, 1282051280],
         "cpu_samples_ns": [1948717938, 1948717938]
@@ -185,6 +187,7 @@ fn the_previous_schema_is_read() {
         cold_speedup: Some(speedup),
         cpu_ns: None,
         cpu_samples_ns: Vec::new(),
+        primary_packets: None,
         ..row("pool", 2, "pool", 1_025_641_026)
     };
     let read = Results::parse(&then).expect("a list");

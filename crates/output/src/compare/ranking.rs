@@ -1,0 +1,103 @@
+//! The comparison of rows: which are fastest, and which cannot be told apart.
+
+use super::{Record, control};
+use rayweave_contract::Scheduling;
+use rayweave_measure::Interval;
+use rayweave_measure::statistics::ratio_interval;
+
+/// The largest error of a control with which a difference that is not seen says something.
+const LARGEST_ERROR: f64 = 0.1;
+
+/// The strategies of a subject with one number of threads, without reference and control.
+#[derive(Clone, Debug)]
+pub(super) struct Section<'a> {
+    /// The number of threads.
+    pub(super) threads: usize,
+    /// The rows with figures, the fastest first.
+    pub(super) rows: Vec<&'a Record>,
+    /// The rows without figures.
+    pub(super) failed: Vec<&'a Record>,
+    /// The smallest difference between two rows that counts, as a share: the control's error.
+    pub(super) trust: f64,
+}
+
+impl<'a> Section<'a> {
+    /// Returns the sections of a subject's records by their number of threads, in the order given.
+    pub(super) fn all(group: &'a [Record]) -> Vec<Self> {
+        let trust = control(group).map_or(0.0, distance_from_1);
+        let mut sections: Vec<Self> = Vec::new();
+        for record in group.iter().skip(1).filter(|record| !record.measurement.control) {
+            let threads = record.measurement.threads;
+            let known = sections.iter().position(|section| section.threads == threads);
+            let place = known.unwrap_or(sections.len());
+            if known.is_none() {
+                sections.push(Self { threads, rows: Vec::new(), failed: Vec::new(), trust });
+            }
+            let section = &mut sections[place];
+            let has_figures = record.measurement.speedup.is_some();
+            if has_figures { &mut section.rows } else { &mut section.failed }.push(record);
+        }
+        for section in &mut sections {
+            section.rows.sort_by(|a, b| speedup(b).total_cmp(&speedup(a)));
+        }
+        sections
+    }
+
+    /// Returns the fastest row, those that cannot be told apart from it, and the slower ones, each
+    /// with its time over the fastest row's.
+    pub(super) fn ranked(&self) -> (Vec<&'a Record>, Vec<(&'a Record, Interval)>) {
+        rank(&self.rows, self.trust)
+    }
+
+    /// Returns the time of `row` over that of `than` in the same rounds, if it is longer: its
+    /// interval lies above 1, and its median further than the control's error.
+    pub(super) fn slower(&self, row: &Record, than: &Record) -> Option<Interval> {
+        slower(row, than, self.trust)
+    }
+
+    /// Returns whether the figures are precise enough to call rows alike.
+    pub(super) fn shows_alike(&self) -> bool {
+        self.trust <= LARGEST_ERROR
+    }
+
+    /// Returns whether the fastest row is faster than one thread.
+    pub(super) fn pays_off(&self) -> bool {
+        let best = self.rows.first().and_then(|record| record.measurement.speedup);
+        best.is_some_and(|best| best.low > 1.0 && best.median > 1.0 + self.trust)
+    }
+}
+
+/// Splits `rows`, the fastest first, into those like the first and the slower ones.
+pub(super) fn rank<'a>(
+    rows: &[&'a Record],
+    trust: f64,
+) -> (Vec<&'a Record>, Vec<(&'a Record, Interval)>) {
+    let (mut alike, mut behind) = (Vec::new(), Vec::new());
+    for &row in rows {
+        match slower(row, rows[0], trust) {
+            Some(ratio) => behind.push((row, ratio)),
+            None => alike.push(row),
+        }
+    }
+    (alike, behind)
+}
+
+fn slower(row: &Record, than: &Record, trust: f64) -> Option<Interval> {
+    let ratio = ratio_interval(&row.measurement.samples_ns, &than.measurement.samples_ns)?;
+    (ratio.low > 1.0 && ratio.median > 1.0 + trust).then_some(ratio)
+}
+
+/// Returns the median speed-up of a row with figures.
+pub(super) fn speedup(record: &Record) -> f64 {
+    record.measurement.speedup.map_or(0.0, |speedup| speedup.median)
+}
+
+/// Returns whether equal shares are fixed beforehand.
+pub(super) fn is_static(record: &Record) -> bool {
+    record.measurement.scheduling == Scheduling::Static.to_string()
+}
+
+/// Returns the distance from 1 that the interval reaches.
+pub(super) fn distance_from_1(interval: Interval) -> f64 {
+    (interval.high - 1.0).max(1.0 - interval.low)
+}
