@@ -362,8 +362,7 @@ fn measure(
 
 /// Returns a line on what is measured next.
 fn message(CompareProgress { strategy, threads, rounds, .. }: CompareProgress) -> String {
-    let stage = if rounds == 0 { "warm-up".to_owned() } else { format!("round {rounds}") };
-    format!("{stage}: {strategy}, threads: {threads}")
+    format!("rounds: {rounds}; {strategy}, threads: {threads}")
 }
 
 /// Work that is left undone after an interruption.

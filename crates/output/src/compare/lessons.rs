@@ -21,6 +21,9 @@ pub(super) fn of(group: &[Record], sections: &[Section<'_>], available: usize) -
     } else {
         String::new()
     };
+    if !section.is_certain() {
+        return Vec::new();
+    }
     let lessons = [work(group), shares(section), dispatch(section), locks(section)];
     lessons.into_iter().flatten().take(MOST).map(|lesson| format!("{on}{lesson}")).collect()
 }
@@ -95,8 +98,7 @@ fn shares(section: &Section<'_>) -> Option<String> {
             longer(ratio.median)
         ));
     }
-    (section.shows_alike() && is_even == Some(true))
-        .then(|| format!("Equal shares do as well here: {even}."))
+    (is_even == Some(true)).then(|| format!("Equal shares do as well here: {even}."))
 }
 
 /// Returns whether it matters how a free thread gets its next piece.
@@ -107,7 +109,7 @@ fn dispatch(section: &Section<'_>) -> Option<String> {
     let first = *rows.first()?;
     rows.retain(|row| is_same_work(row, first));
     let mut ways = vec![
-        ("a counter or queue", Scheduling::Dynamic { chunk: 1 }),
+        ("counter or queue", Scheduling::Dynamic { chunk: 1 }),
         ("shrinking chunks", Scheduling::Guided),
         ("stealing", Scheduling::WorkStealing),
         ("halving as rayon does", Scheduling::RecursiveSplit),
@@ -119,9 +121,10 @@ fn dispatch(section: &Section<'_>) -> Option<String> {
     let (alike, behind) = rank(&rows, section.trust);
     let Some(most) = behind.iter().map(|(_, ratio)| ratio.median).reduce(f64::max) else {
         let ways: Vec<&str> = ways.iter().map(|(name, _)| *name).collect();
-        return section.shows_alike().then(|| {
-            format!("The next piece by {}: no difference to be seen here.", ways.join(", "))
-        });
+        return Some(format!(
+            "How the next piece is taken ({}) makes no difference to be seen here.",
+            ways.join(", ")
+        ));
     };
     let slower: Vec<&Record> = behind.iter().map(|(row, _)| *row).collect();
     let (verb, most) = match slower.len() {
@@ -151,13 +154,13 @@ fn locks(section: &Section<'_>) -> Option<String> {
     let pixel = best(Output::Mutex, &[Granularity::Pixel]);
     let cost = |locked: Option<&Record>, than: Option<&Record>| {
         let (locked, than) = locked.zip(than).filter(|(a, b)| is_same_work(a, b))?;
-        match section.slower(locked, than) {
-            None => section.shows_alike().then(|| "costs nothing to be seen".to_owned()),
+        Some(match section.slower(locked, than) {
+            None => "costs nothing to be seen".to_owned(),
             Some(ratio) => {
                 let (locked, than) = (&locked.measurement.strategy, &than.measurement.strategy);
-                Some(format!("costs {} ({locked} against {than})", longer(ratio.median)))
+                format!("costs {} ({locked} against {than})", longer(ratio.median))
             }
-        }
+        })
     };
     match (cost(row, free), cost(pixel, row.or(free))) {
         (None, None) => None,

@@ -5,7 +5,7 @@ use rayweave_contract::Scheduling;
 use rayweave_measure::Interval;
 use rayweave_measure::statistics::ratio_interval;
 
-/// The largest error of a control with which a difference that is not seen says something.
+/// The largest error of a control with which figures can be relied on.
 const LARGEST_ERROR: f64 = 0.1;
 
 /// The strategies of a subject with one number of threads, without reference and control.
@@ -55,8 +55,8 @@ impl<'a> Section<'a> {
         slower(row, than, self.trust)
     }
 
-    /// Returns whether the figures are precise enough to call rows alike.
-    pub(super) fn shows_alike(&self) -> bool {
+    /// Returns whether the figures are precise enough to rely on.
+    pub(super) fn is_certain(&self) -> bool {
         self.trust <= LARGEST_ERROR
     }
 

@@ -2,7 +2,7 @@
 //! strategy wins and why.
 
 use super::lessons::EVEN;
-use super::{Record, Results, changes, markdown, scene_name};
+use super::{Record, Results, changes, markdown, scene_name, screen};
 use crate::machine;
 use crate::style::{self, clipped, wrapped};
 use rayweave_contract::{Granularity, Scheduling};
@@ -37,7 +37,7 @@ const NAMES: (usize, usize) = (20, 8);
 
 /// Returns the lines of the same table without intervals, and the sentences. No line is longer than
 /// 80 columns.
-pub(super) fn screen(results: &Results) -> Vec<String> {
+pub(super) fn first_screen(results: &Results) -> Vec<String> {
     let groups: Vec<&[Record]> = results.groups().collect();
     let mut lines: Vec<String> = groups.iter().map(|group| wrapped(&why(group), "  ")).collect();
     lines.extend([String::new(), "speed-up over one thread; *: highest of the scene".to_owned()]);
@@ -54,6 +54,7 @@ pub(super) fn screen(results: &Results) -> Vec<String> {
         lines.push(style::table(header, rows, 1..=groups.len()));
         lines.push(String::new());
     }
+    lines.extend(groups.first().map(|group| screen::work(&group[0].subject)));
     lines.extend(doubts(results, &groups).iter().map(|line| wrapped(line, "")));
     lines
 }

@@ -4,7 +4,7 @@
 use super::lessons::{self, samples_are_shared};
 use super::ranking::{Section, distance_from_1, is_static, rank, speedup};
 use super::table::{TELLING, computed, goal_line, milliseconds, reference};
-use super::{Record, Results, changes, complaint, control, scenes, short};
+use super::{Record, Results, Subject, changes, complaint, control, scenes, short};
 use crate::style::{self, WIDTH, clipped, wrapped};
 use crate::{machine, noise};
 use rayweave_contract::{Granularity, Output};
@@ -18,7 +18,8 @@ const BAR: usize = 20;
 const NAME: usize = 24;
 
 pub(super) fn text(results: &Results, notes: &[String]) -> String {
-    let mut lines = if results.has_scenes() { scenes::screen(results) } else { subjects(results) };
+    let mut lines =
+        if results.has_scenes() { scenes::first_screen(results) } else { subjects(results) };
     if results.noise.disturbed {
         lines.extend(noise::text(&results.noise).lines().map(|line| wrapped(line, "")));
     }
@@ -49,6 +50,9 @@ fn subjects(results: &Results) -> Vec<String> {
             lines.push(format!("Samples {samples}."));
         }
         lines.extend(sections.iter().map(|section| wrapped(&sentence(section), "")));
+        if sections.iter().any(|section| !section.is_certain()) {
+            lines.push("The figures are too uncertain to rely on, see below.".to_owned());
+        }
         if sections.is_empty() {
             lines.push(format!("Only {} was measured, so nothing is compared.", reference(group)));
         }
@@ -98,6 +102,12 @@ fn sentence(section: &Section<'_>) -> String {
         return format!("On {on} no strategy gave figures to compare.");
     };
     let name = &best.measurement.strategy;
+    if section.threads == 1 {
+        let range = range(&section.rows);
+        return format!(
+            "On {on} nothing is to be gained: {range} times as fast as the plain loop."
+        );
+    }
     if !section.pays_off() {
         return format!(
             "On {on} no strategy is seen to be faster than the plain loop on one thread: the best, \
@@ -105,9 +115,7 @@ fn sentence(section: &Section<'_>) -> String {
             speedup(best)
         );
     }
-    let [most, least] = [&alike[..1], &alike[alike.len() - 1..]].map(|row| speedup(row[0]));
-    let [most, least] = [most, least].map(|speedup| format!("{speedup:.1}"));
-    let times = if most == least { most } else { format!("{least} to {most}") };
+    let times = range(&alike);
     let times = format!("{times} times as fast as one thread");
     let others = match &behind[..] {
         [] => String::new(),
@@ -130,6 +138,13 @@ fn sentence(section: &Section<'_>) -> String {
             names(&alike)
         ),
     }
+}
+
+/// Returns the speed-ups of rows, the fastest first.
+fn range(rows: &[&Record]) -> String {
+    let ends = [rows.last(), rows.first()].map(|row| row.map_or(0.0, |row| speedup(row)));
+    let [least, most] = ends.map(|speedup| format!("{speedup:.1}"));
+    if most == least { most } else { format!("{least} to {most}") }
 }
 
 /// Returns up to three names; of more rows, two names and the number of the others.
@@ -173,13 +188,6 @@ fn measured(group: &[Record]) -> String {
         .median_ns
         .map(|ns| format!(" One thread takes {} ms;", milliseconds(ns)));
     let rounds = format!("{}{rounds} rounds", if *interrupted { "interrupted after " } else { "" });
-    let work = if subject.lanes == 1 && !samples_are_shared(subject) {
-        "Equal work: each traces the same rays, one by one.".to_owned()
-    } else {
-        let computed = computed(subject);
-        let how = computed.trim_start_matches("computed: ");
-        format!("Not equal work: {how} (--equal-work on compares threading alone).")
-    };
     format!(
         "One image ({}, {} x {} pixels, {rays}), {} ways to compute it: {bits} (digest {}).{} \
          {rounds}. {work}",
@@ -188,8 +196,17 @@ fn measured(group: &[Record]) -> String {
         subject.height,
         ways.len(),
         short(reference_digest),
-        alone.unwrap_or_default()
+        alone.unwrap_or_default(),
+        work = work(subject)
     )
+}
+
+/// Returns a sentence that says whether only threading differs.
+pub(super) fn work(subject: &Subject) -> String {
+    if subject.lanes == 1 && !samples_are_shared(subject) {
+        return "Equal work: each traces the same rays, one by one.".to_owned();
+    }
+    format!("Not equal work: {}.", computed(subject).trim_start_matches("computed: "))
 }
 
 /// Returns the bars of a section below their scale, grouped by scheduling.

@@ -111,6 +111,15 @@ fn the_sentence_names_the_fastest_and_those_like_it() {
     let sentence = first_sentence(&sure);
     assert!(sentence.ends_with("; counter takes 1 % longer."), "{sentence}");
 
+    // One thread gains nothing.
+    let mut one = list(&[halves, counter], 1.0);
+    one.results[2..].iter_mut().for_each(|record| record.measurement.threads = 1);
+    one.results[3].measurement.speedup = Some(Interval { median: 0.9, low: 0.8, high: 1.0 });
+    assert_eq!(
+        first_sentence(&one),
+        "On 1 thread nothing is to be gained: 0.9 to 2.0 times as fast as the plain loop."
+    );
+
     // Without an image of the reference there are no figures.
     let mut broken = list(&[halves], 1.0);
     broken.results[2].measurement = failed(broken.results[2].measurement.clone(), "gone");
@@ -162,8 +171,8 @@ fn who_deals_out_matters_only_if_the_figures_say_so() {
     let slow = ("slow", 1200, ["tile", "guided", "in-place"]);
     let slower = ("slower", 1300, ["tile", "work-stealing", "in-place"]);
     let lesson = |given: &[Given<'_>]| lessons_of(&list(given, 1.56));
-    let none = "The next piece by a counter or queue, halving as rayon does: no difference to be \
-                seen here.";
+    let none = "How the next piece is taken (counter or queue, halving as rayon does) makes no \
+                difference to be seen here.";
     assert_eq!(lesson(&[halves, counter, channel]), [none]);
     assert_eq!(lesson(&[halves, channel]), [""; 0], "a channel does more than deal out");
     assert_eq!(
@@ -181,6 +190,8 @@ fn who_deals_out_matters_only_if_the_figures_say_so() {
     let mut uncertain = list(&[halves, counter], 1.56);
     uncertain.results[1].measurement.speedup = Some(Interval { median: 1.0, low: 0.89, high: 1.0 });
     assert_eq!(lessons_of(&uncertain), [""; 0]);
+    let sentence = first_sentence(&uncertain);
+    assert!(sentence.ends_with(" The figures are too uncertain to rely on, see below."));
 }
 
 #[test]
