@@ -63,7 +63,8 @@ pub fn wrapped(text: &str, indent: &str) -> String {
             let part: String = part.iter().collect();
             match lines.last_mut() {
                 Some(line) if length(line) + 1 + length(&part) <= WIDTH => {
-                    *line += &format!(" {part}")
+                    line.push(' ');
+                    line.push_str(&part);
                 }
                 Some(_) => lines.push(format!("{indent}{part}")),
                 None => lines.push(part),
