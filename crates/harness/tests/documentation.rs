@@ -5,8 +5,16 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use tempfile::TempDir;
 
-const DOCUMENTS: [&str; 5] =
-    ["README.md", "ARCHITECTURE.md", "METHODOLOGY.md", "CONTRIBUTING.md", "docs/numerics.md"];
+const DOCUMENTS: [&str; 8] = [
+    "README.md",
+    "ARCHITECTURE.md",
+    "METHODOLOGY.md",
+    "CONTRIBUTING.md",
+    "docs/methodology-studies.md",
+    "docs/numerics.md",
+    "docs/performance.md",
+    "docs/strategies.md",
+];
 
 /// Commands about the whole repository: CI runs them (`.ci/run`), a test cannot.
 const RUN_BY_CI: [&str; 4] = ["cargo run --release", "cargo test", "cargo bench", ".ci/run"];
@@ -117,7 +125,9 @@ fn nothing_is_left_to_fill_in() {
 fn the_documents_links_lead_somewhere() {
     for document in DOCUMENTS {
         let text = fs::read_to_string(repository().join(document)).expect("the document");
-        for link in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
+        let links = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+        let pictures = text.split("src=\"").skip(1).filter_map(|rest| rest.split('"').next());
+        for link in links.chain(pictures) {
             if !link.contains("://") && !link.starts_with('#') {
                 let folder =
                     repository().join(document).parent().expect("a file is in a folder").to_owned();
@@ -125,4 +135,17 @@ fn the_documents_links_lead_somewhere() {
             }
         }
     }
+}
+
+/// Catches a table, screen or picture in a document that is not the stored one, and a document that
+/// was not spliced after a change of a strategy's source.
+#[test]
+fn the_documents_show_their_stored_results() {
+    let output = Command::new("bash")
+        .args(["scripts/refresh", "--check"])
+        .current_dir(repository())
+        .output()
+        .expect("bash starts");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!((output.status.code(), &*said), (Some(0), ""));
 }
