@@ -49,11 +49,11 @@ pub struct Check<'a> {
     /// The sides of a tile in pixels.
     pub tiles: &'a [NonZeroU32],
     /// The time to wait for missing threads, usually
-    /// [`TIMEOUT`](crate::computing_threads::TIMEOUT).
-    pub timeout: Duration,
+    /// [`TIMEOUT`](crate::computing_threads::TIMEOUT); `None` if the threads are counted already.
+    pub timeout: Option<Duration>,
 }
 
-/// The progress of a check before each rendering.
+/// The progress of a check before each count of threads and each rendering.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CheckProgress {
     /// The strategy that is being checked.
@@ -64,6 +64,8 @@ pub struct CheckProgress {
     pub done: usize,
     /// The number of all renderings.
     pub total: usize,
+    /// The reason for a pause of up to the timeout: the check waits for all threads to meet.
+    pub is_counting: bool,
 }
 
 /// The result of a check.
@@ -149,11 +151,13 @@ impl<'a> Check<'a> {
         let verdict = Verdict { checked: vec![self.checked()], compared: 0, findings: Vec::new() };
         let mut run = Run { pairs: &pairs, verdict, done: 0, total, progress: &mut progress };
         for &strategy in self.strategies {
+            // Set until the first wrong number: each further count would wait for as long again.
+            let mut timeout = self.timeout;
             for &threads in self.threads_of(strategy) {
                 let plans = self.tiles.iter().map(|&tile| Plan { threads, tile });
-                // Stop at the first wrong number, because each would wait for the timeout again.
-                let _ =
-                    plans.clone().all(|plan| run.threads_are_right(strategy, plan, self.timeout));
+                for plan in plans.clone() {
+                    timeout = timeout.filter(|&time| run.threads_are_right(strategy, plan, time));
+                }
                 plans.for_each(|plan| run.render_all(strategy, plan));
             }
         }
@@ -210,10 +214,13 @@ struct Run<'a> {
 
 impl Run<'_> {
     fn threads_are_right(&mut self, strategy: Strategy<'_>, plan: Plan, timeout: Duration) -> bool {
+        self.tell(strategy, plan.threads, self.done, true);
         let rendezvous = Rendezvous::of(plan);
+        let expected = plan.threads.get();
         let fault = match rendezvous.computing_threads(strategy, timeout) {
-            Ok(found) if found == plan.threads.get() => return true,
-            Ok(found) => Fault::Threads { expected: plan.threads.get(), found },
+            Ok(found) if found == expected => return true,
+            Ok(found) if found > expected => Fault::TooManyThreads { expected, found },
+            Ok(found) => Fault::TooFewThreads { expected, found, waited: timeout },
             Err(error) => Fault::Failed(error.to_string()),
         };
         let render = CheckedRender {
@@ -237,12 +244,7 @@ impl Run<'_> {
         };
         for (case, expected) in self.pairs {
             for repetition in 0..REPETITIONS {
-                (self.progress)(CheckProgress {
-                    strategy: strategy.name,
-                    threads: plan.threads.get(),
-                    done: self.done + repetition,
-                    total: self.total,
-                });
+                self.tell(strategy, plan.threads, self.done + repetition, false);
                 self.verdict.compared += 1;
                 let faults = render_and_compare(&mut renderer, plan.threads, &*case.work, expected);
                 if faults.is_empty() {
@@ -263,6 +265,17 @@ impl Run<'_> {
             }
             self.done += REPETITIONS;
         }
+    }
+
+    fn tell(
+        &mut self,
+        strategy: Strategy<'_>,
+        threads: NonZeroUsize,
+        done: usize,
+        is_counting: bool,
+    ) {
+        let (strategy, threads, total) = (strategy.name, threads.get(), self.total);
+        (self.progress)(CheckProgress { strategy, threads, done, total, is_counting });
     }
 
     fn found(
@@ -307,7 +320,7 @@ fn render_and_compare(
 /// Returns a fault if there are more threads than expected. Fewer are none: a thread may come when
 /// the others have done all the work.
 fn too_many_threads(expected: usize, found: usize) -> Option<Fault> {
-    (found > expected).then_some(Fault::Threads { expected, found })
+    (found > expected).then_some(Fault::TooManyThreads { expected, found })
 }
 
 fn difference(expected: &Image, found: &Image, record: &TileRecord) -> Option<Fault> {

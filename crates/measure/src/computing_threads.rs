@@ -2,9 +2,9 @@
 //!
 //! Observing an ordinary rendering is not enough: a thread may be idle by chance, and on two cores
 //! 64 threads hardly ever run together. So the work is a rendezvous: each tile waits until N
-//! distinct threads compute one. A strategy with N threads brings all of them; with fewer, the
-//! time runs out. A thread that comes after that is not counted, because it may have been started
-//! when another had ended.
+//! distinct threads compute one. A strategy with N threads brings all of them. With fewer, or with
+//! a lock that only one thread at a time computes under, the time runs out. A thread that comes
+//! after that is not counted, because it may have been started when another had ended.
 
 use crate::catch_panic::catch_panic;
 use rayweave_contract::{Image, ImageError, Plan, Strategy, Tile, Work};
@@ -15,8 +15,9 @@ use std::thread::{self, ThreadId};
 use std::time::{Duration, Instant};
 use thiserror::Error;
 
-/// The time that a rendezvous waits for threads. Only a strategy with too few threads takes it.
-pub const TIMEOUT: Duration = Duration::from_secs(10);
+/// The time that a rendezvous waits for the next thread. Only a strategy with too few threads takes
+/// it. It begins anew with each thread that comes, so a slow machine may start a thousand.
+pub const TIMEOUT: Duration = Duration::from_secs(1);
 
 /// The time that threads wait for a surplus thread after all have met.
 const GRACE: Duration = Duration::from_millis(20);
@@ -63,7 +64,7 @@ impl Rendezvous {
 
     /// Returns the number of threads that compute when `strategy` is prepared for the plan.
     ///
-    /// Too few are counted exactly, after `timeout`. If there are too many, at least one of them is
+    /// Too few are counted exactly, when no other has come for `timeout`. If there are too many, at least one of them is
     /// counted, unless the operating system does not schedule it for the 20 ms that the others wait
     /// for it.
     ///
@@ -100,9 +101,7 @@ struct State {
 
 #[derive(Clone, Copy, Debug)]
 enum Phase {
-    /// No thread has come yet.
-    Empty,
-    /// Threads wait for the others, until this time.
+    /// Threads wait for the next one, until this time.
     Gathering(Instant),
     /// All threads have met, and wait for a surplus one until this time.
     Complete(Instant),
@@ -114,7 +113,9 @@ enum Phase {
 
 impl RendezvousWork {
     fn new(threads: NonZeroUsize, timeout: Duration) -> Self {
-        let state = Mutex::new(State { seen: HashSet::new(), phase: Phase::Empty });
+        // The first thread to come sets the time.
+        let phase = Phase::Gathering(Instant::now());
+        let state = Mutex::new(State { seen: HashSet::new(), phase });
         Self { threads: threads.get(), timeout, state, changed: Condvar::new() }
     }
 
@@ -126,17 +127,15 @@ impl RendezvousWork {
 impl Work for RendezvousWork {
     fn render(&self, tile: &mut Tile<'_>) {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
-        if !matches!(state.phase, Phase::GivenUp) {
-            state.seen.insert(thread::current().id());
-        }
-        if let Phase::Empty = state.phase {
-            state.phase = Phase::Gathering(Instant::now() + self.timeout);
-        }
-        if let Phase::Gathering(_) = state.phase
-            && state.seen.len() >= self.threads
-        {
-            state.phase = Phase::Complete(Instant::now() + GRACE);
-            self.changed.notify_all();
+        let is_new =
+            !matches!(state.phase, Phase::GivenUp) && state.seen.insert(thread::current().id());
+        if is_new && matches!(state.phase, Phase::Gathering(_)) {
+            if state.seen.len() >= self.threads {
+                state.phase = Phase::Complete(Instant::now() + GRACE);
+                self.changed.notify_all();
+            } else {
+                state.phase = Phase::Gathering(Instant::now() + self.timeout);
+            }
         }
         while let Phase::Gathering(end) | Phase::Complete(end) = state.phase {
             let left = end.saturating_duration_since(Instant::now());
@@ -186,6 +185,19 @@ mod tests {
         for (present, asked) in [(1, 2), (3, 5)] {
             assert_eq!(count(present, asked, Duration::from_millis(50)), present, "too few");
         }
+    }
+
+    /// Catches a wait that a slow machine could not start many threads in.
+    #[test]
+    fn each_thread_that_comes_is_given_the_whole_time() {
+        let (meeting, pause) = (meeting_of(5, Duration::from_secs(2)), Duration::from_millis(600));
+        thread::scope(|scope| {
+            for _ in 0..5 {
+                scope.spawn(|| compute(&meeting));
+                thread::sleep(pause);
+            }
+        });
+        assert_eq!(meeting.threads(), 5);
     }
 
     /// Catches threads that run one after the other counted as several.

@@ -5,6 +5,7 @@ use rayweave_contract::Rgb;
 use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
 use std::fmt;
+use std::time::Duration;
 
 /// A fault of a strategy, and the rendering in which it shows.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -53,12 +54,21 @@ pub enum Fault {
         /// Every computation of the first; empty when it was written without being computed.
         computations: Vec<Computation>,
     },
-    /// The number of computing threads is not the one asked for.
-    Threads {
+    /// More threads computed than were asked for.
+    TooManyThreads {
         /// The expected number: that asked for, or 1 for a strategy that starts no threads.
         expected: usize,
         /// The number of threads that computed.
         found: usize,
+    },
+    /// Fewer threads computed at the same time than were asked for.
+    TooFewThreads {
+        /// The number asked for.
+        expected: usize,
+        /// The largest number of threads that were inside the work at the same time.
+        found: usize,
+        /// The time that these waited for another one.
+        waited: Duration,
     },
     /// The strategy returned an error or panicked, with this message.
     Failed(String),
@@ -98,7 +108,7 @@ impl Serialize for Fault {
         let kind = match self {
             Self::Different(_) => "different",
             Self::NotOnce { .. } => "not-once",
-            Self::Threads { .. } => "threads",
+            Self::TooManyThreads { .. } | Self::TooFewThreads { .. } => "threads",
             Self::Failed(_) => "failed",
         };
         let mut fault = serializer.serialize_struct("Fault", 2)?;
@@ -140,8 +150,21 @@ impl fmt::Display for Fault {
                     }
                 }
             }
-            Self::Threads { expected, found } => {
+            Self::TooManyThreads { expected, found } => {
                 write!(f, "computing threads: expected {expected}, found {found}")
+            }
+            Self::TooFewThreads { expected, found, waited } => {
+                let threads = match found {
+                    0 => "no thread was".to_owned(),
+                    1 => "only one thread was".to_owned(),
+                    _ => format!("only {found} threads were"),
+                };
+                write!(
+                    f,
+                    "computing threads: expected {expected}, found {found}: {threads} inside the \
+                     work at any time within {} s (a lock held while computing?)",
+                    waited.as_secs_f64()
+                )
             }
             Self::Failed(message) => f.write_str(message),
         }
@@ -233,9 +256,21 @@ mod tests {
         let finding =
             |fault| Finding { strategy: "one", threads: 1, render: None, fault }.to_string();
         assert_eq!(
-            finding(Fault::Threads { expected: 1, found: 2 }),
+            finding(Fault::TooManyThreads { expected: 1, found: 2 }),
             "one, 1 thread: computing threads: expected 1, found 2"
         );
+        for (found, threads) in
+            [(0, "no thread was"), (1, "only one thread was"), (2, "only 2 threads were")]
+        {
+            let waited = Duration::from_secs(1);
+            assert_eq!(
+                Fault::TooFewThreads { expected: 3, found, waited }.to_string(),
+                format!(
+                    "computing threads: expected 3, found {found}: {threads} inside the work at \
+                     any time within 1 s (a lock held while computing?)"
+                )
+            );
+        }
         let once = |computations| Fault::NotOnce { pixels: 3, x: 0, y: 1, computations };
         let text = finding(once(vec![computation(), computation()]));
         assert!(text.contains("once: 3, first (0, 1), computed 2 times, tile 8x4 at"), "{text}");

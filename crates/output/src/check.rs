@@ -79,7 +79,7 @@ mod tests {
             strategy: "one",
             threads: 2,
             render: Some(render.clone()),
-            fault: Fault::Threads { expected: 2, found },
+            fault: Fault::TooManyThreads { expected: 2, found },
         };
         let images = vec![CheckedImage { scene: "room".to_owned(), width: 7, height: 3 }];
         let checked =

@@ -77,7 +77,7 @@ fn findings_at(
         cases: &cases,
         threads: &[threads(2)],
         tiles: &[tile(8)],
-        timeout,
+        timeout: Some(timeout),
     };
     check.run(|_| {}).expect("a reference image").findings
 }
@@ -157,7 +157,7 @@ fn writes_a_pixel_twice_with_a_torn_value() {
     let [different, twice, third_thread] = found.as_slice() else {
         panic!("{found:#?}");
     };
-    assert_eq!(third_thread.fault, Fault::Threads { expected: 2, found: 3 });
+    assert_eq!(third_thread.fault, Fault::TooManyThreads { expected: 2, found: 3 });
     let Fault::NotOnce { pixels: 1, x: 5, y: 9, computations } = &twice.fault else {
         panic!("{twice:#?}");
     };
@@ -187,7 +187,7 @@ fn computes_a_tile_twice_with_the_same_result() {
     else {
         panic!("{found:#?}");
     };
-    assert_eq!(third_thread.fault, Fault::Threads { expected: 2, found: 3 });
+    assert_eq!(third_thread.fault, Fault::TooManyThreads { expected: 2, found: 3 });
     assert_eq!((*pixels, *x, *y), (16, 16, 8));
     let names: Vec<_> = computations.iter().filter_map(|c| c.thread.name.as_deref()).collect();
     assert_eq!(names, ["share 1", "share 0"]);
@@ -233,15 +233,15 @@ fn computes_with_another_number_of_threads() {
         let findings = findings_at((20, 12), timeout, move |plan, work, image| {
             share_out(count(plan, image), work, image.tiles(plan.tile))
         });
-        let expected: Vec<_> =
-            found.iter().map(|&found| Fault::Threads { expected: 2, found }).collect();
+        let expected: Vec<_> = found.iter().map(|&found| wrong_number(2, found)).collect();
         assert_eq!(faults(&findings), expected.iter().collect::<Vec<_>>(), "case {i}");
         let place = findings[0].render.as_ref().map(|render| render.scene.as_str());
         match i {
             2 => assert_eq!(
                 findings[0].to_string(),
                 "broken, 2 threads, rendezvous 8x32, tiles of 8: \
-                 computing threads: expected 2, found 1"
+                 computing threads: expected 2, found 1: only one thread was inside the work at \
+                 any time within 0.2 s (a lock held while computing?)"
             ),
             4 => assert_eq!(place, Some("gradient")),
             _ => {}
@@ -260,26 +260,55 @@ fn joins_one_thread_before_the_next() {
         }
         Ok(())
     });
-    assert_eq!(faults(&found), [&Fault::Threads { expected: 2, found: 1 }]);
+    assert_eq!(faults(&found), [&wrong_number(2, 1)]);
 }
 
-/// Catches a check that waits for a strategy with too few threads once for each size of tile too,
-/// not only for each number of threads.
 #[test]
-fn is_not_waited_for_again_with_other_tiles() {
+fn computes_with_a_lock_held() {
+    let lock = Mutex::new(());
+    let found = findings_at((20, 12), IMPATIENCE, move |plan, work, image| {
+        share_out(plan.threads.get(), &Locked { work, lock: &lock }, image.tiles(plan.tile))
+    });
+    assert_eq!(faults(&found), [&wrong_number(2, 1)]);
+}
+
+/// A work that only one thread at a time computes.
+struct Locked<'a> {
+    work: &'a dyn Work,
+    lock: &'a Mutex<()>,
+}
+
+impl Work for Locked<'_> {
+    fn render(&self, tile: &mut Tile<'_>) {
+        let _held = self.lock.lock();
+        self.work.render(tile);
+    }
+}
+
+/// Catches a check that waits for a strategy with too few threads more than once.
+#[test]
+fn is_waited_for_once() {
     let alone =
         |plan: Plan| renderer(move |work, image| share_out(1, work, image.tiles(plan.tile)));
     let check = Check {
         reference: reference(),
         strategies: &[broken_strategy(&alone)],
         cases: &[],
-        threads: &[threads(2), threads(3)],
+        threads: &[threads(1), threads(2), threads(3)],
         tiles: &[tile(1), tile(8)],
-        timeout: IMPATIENCE,
+        timeout: Some(IMPATIENCE),
     };
-    let found = check.run(|_| {}).expect("a reference image").findings;
-    let expected = [2, 3].map(|expected| Fault::Threads { expected, found: 1 });
-    assert_eq!(faults(&found), expected.iter().collect::<Vec<_>>());
+    let mut counted = Vec::new();
+    let verdict = check.run(|progress| {
+        assert!(progress.is_counting, "there is no image to render");
+        counted.push(progress.threads);
+    });
+    let found = verdict.expect("a reference image").findings;
+    assert_eq!(faults(&found), [&wrong_number(2, 1)]);
+    assert_eq!(counted, [1, 1, 2]);
+
+    let not_counted = Check { timeout: None, ..check }.run(|_| panic!("nothing to do"));
+    assert_eq!(not_counted.expect("a reference image").findings, []);
 }
 
 #[test]
@@ -371,6 +400,14 @@ fn does_not_compute_the_second_time() {
         [&Fault::NotOnce { pixels: 240, x: 0, y: 0, computations: Vec::new() }]
     );
     assert_eq!(found[0].render.as_ref().map(|render| render.repetition), Some(2));
+}
+
+/// Returns the fault of `found` threads, waited for with [`IMPATIENCE`].
+fn wrong_number(expected: usize, found: usize) -> Fault {
+    if found > expected {
+        return Fault::TooManyThreads { expected, found };
+    }
+    Fault::TooFewThreads { expected, found, waited: IMPATIENCE }
 }
 
 fn faults(findings: &[Finding]) -> Vec<&Fault> {

@@ -28,7 +28,7 @@ fn the_real_strategies_agree() {
         cases: &sizes.map(case),
         threads: &THREADS.map(threads),
         tiles: &[1, 8, 32, 1000].map(tile),
-        timeout: PATIENCE,
+        timeout: Some(PATIENCE),
     };
     let mut told = 0;
     let verdict = check
