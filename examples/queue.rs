@@ -1,0 +1,36 @@
+//! A free thread takes the next item from a queue. What it takes is the place of the result itself,
+//! so no two threads can have the same one. It belongs to lesson 7, `tile-queue`.
+
+use crossbeam::queue::SegQueue;
+use std::thread;
+use std::time::Instant;
+
+fn main() {
+    let start = Instant::now();
+    let mut results = vec![0; 1000];
+    let queue = SegQueue::new();
+    for (i, result) in results.iter_mut().enumerate() {
+        queue.push((i, result));
+    }
+    thread::scope(|scope| {
+        for _ in 0..2 {
+            scope.spawn(|| {
+                while let Some((i, result)) = queue.pop() {
+                    *result = item(i);
+                }
+            });
+        }
+    });
+    drop(queue);
+    print(start, &results);
+}
+
+/// Returns the result of item `i`: the larger `i` is, the longer it takes, up to about half a millisecond.
+fn item(i: usize) -> u64 {
+    (0..500 * i as u64).fold(1, |x: u64, step| x.wrapping_mul(0x5851_f42d_4c95_7f2d) ^ step)
+}
+
+fn print(start: Instant, results: &[u64]) {
+    let checksum = results.iter().fold(0, |sum: u64, result| sum.rotate_left(1) ^ result);
+    println!("{:.3} s, checksum {checksum:016x}", start.elapsed().as_secs_f64());
+}
