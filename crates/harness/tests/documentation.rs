@@ -5,11 +5,14 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use tempfile::TempDir;
 
-const DOCUMENTS: [&str; 8] = [
+const DOCUMENTS: [&str; 11] = [
     "README.md",
     "ARCHITECTURE.md",
     "METHODOLOGY.md",
     "CONTRIBUTING.md",
+    "docs/glossary.md",
+    "docs/lab.md",
+    "docs/lab-answers.md",
     "docs/methodology-studies.md",
     "docs/numerics.md",
     "docs/performance.md",
@@ -20,8 +23,7 @@ const DOCUMENTS: [&str; 8] = [
 const RUN_BY_CI: [&str; 4] = ["cargo run --release", "cargo test", "cargo bench", ".ci/run"];
 
 /// Commands that other tests cover, and fuzzing, which has no end.
-const RUN_ELSEWHERE: [&str; 4] =
-    ["dealt-rows", "--example hard-cases", "--example leaks", "cargo fuzz"];
+const RUN_ELSEWHERE: [&str; 3] = ["dealt-rows", "--example ", "cargo fuzz"];
 
 /// The file of cases that the documents' commands read, and its name there.
 const CASES: (&str, &str) = ("crates/accuracy/corpus/hard-cases.jsonl", "cases.jsonl");

@@ -64,9 +64,9 @@ impl Rendezvous {
 
     /// Returns the number of threads that compute when `strategy` is prepared for the plan.
     ///
-    /// Too few are counted exactly, when no other has come for `timeout`. If there are too many, at least one of them is
-    /// counted, unless the operating system does not schedule it for the 20 ms that the others wait
-    /// for it.
+    /// Too few are counted exactly, when no other has come for `timeout`. If there are too many, at
+    /// least one of them is counted, unless the operating system does not schedule it for the 20 ms
+    /// that the others wait for it.
     ///
     /// # Errors
     ///
