@@ -324,18 +324,15 @@ mod tests {
                 |side: f64| Vector::new((x + side) as f32, (side - 5.0) as f32, side as f32);
             Aabb::new(corner(-half), corner(half))
         };
-        let arrangements: [(&str, fn(f64) -> (f64, f64)); 4] = [
-            ("equal", |_| (1.0, 0.5)),
-            ("within each other", |i| (1.0, 0.5 + i * 1e-5)),
-            ("in a row", |i| (i, 0.25)),
-            ("smaller than a rounding", |_| (1e6, 1e-6)),
-        ];
-        for (name, arrange) in arrangements {
+        // The place and half the side of each cube, and what they grow by from one to the next.
+        for (name, (x, step), (half, growth)) in [
+            ("equal", (1.0, 0.0), (0.5, 0.0)),
+            ("within each other", (1.0, 0.0), (0.5, 1e-5)),
+            ("in a row", (0.0, 1.0), (0.25, 0.0)),
+            ("smaller than a rounding", (1e6, 0.0), (1e-6, 0.0)),
+        ] {
             let bounds: Vec<_> = (0..40_000)
-                .map(|i| {
-                    let (x, half) = arrange(f64::from(i));
-                    cube(x, half)
-                })
+                .map(|i| cube(x + f64::from(i) * step, half + f64::from(i) * growth))
                 .collect();
             let mut members = Vec::new();
             let bvh = Bvh::build(&bounds, |leaf| {
