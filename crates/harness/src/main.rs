@@ -54,7 +54,7 @@ enum Command {
     Render(render::Arguments),
     /// Prove that all strategies render the same image, bit for bit
     Check(check::Arguments),
-    /// Time the strategies in interleaved rounds and print a table (the default)
+    /// Time the strategies in interleaved rounds, and show which are fastest (the default)
     Compare(compare::Arguments),
     /// Measure the overheads of each strategy on synthetic work
     Overhead(overhead::Arguments),

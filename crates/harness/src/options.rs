@@ -23,7 +23,8 @@ const MAX_TILES: u64 = 1 << 24;
 /// The options that choose the image and its computation.
 #[derive(Args, Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct SceneOptions {
-    /// Size of the image in pixels, each 1..=65535 [default: the scene's]
+    /// Size of the image in pixels, each 1..=65535 [default: the scene's; 250x250 where
+    /// `compare` gets no scene file]
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub size: Option<(u32, u32)>,
     /// Density of samples: 0 is one ray a pixel; N is (2 N + 1)^2 rays on the lattice, or
@@ -130,7 +131,7 @@ pub enum SharingOption {
     Both,
 }
 
-/// A setting that is off by default.
+/// A setting that is on or off.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
 pub enum SwitchOption {
     /// Enable it
