@@ -1,4 +1,4 @@
-//! What `rayweave compare` shows by default: its width, its columns, equal work, and its image.
+//! The default output of `rayweave compare`: its width, its columns, equal work, and its image.
 
 mod program;
 

@@ -57,7 +57,9 @@ pub(crate) fn significant(value: f64) -> String {
 pub fn wrapped(text: &str, indent: &str) -> String {
     let length = |text: &str| text.chars().count();
     let mut lines: Vec<String> = Vec::new();
-    for word in text.split_whitespace() {
+    // A number stays with its sign.
+    let words = text.replace(" %", "\u{2060}%");
+    for word in words.split_whitespace().map(|word| word.replace('\u{2060}', " ")) {
         let letters: Vec<char> = word.chars().collect();
         for part in letters.chunks(WIDTH - length(indent)) {
             let part: String = part.iter().collect();
@@ -74,10 +76,29 @@ pub fn wrapped(text: &str, indent: &str) -> String {
     lines.join("\n")
 }
 
-/// Returns the first characters of `text`, with two dots at the end if there are more than `length`.
+/// Returns the first characters of `text`, and two dots if there are more than `length`.
 pub(crate) fn clipped(text: &str, length: usize) -> String {
     if text.chars().count() <= length {
         return text.to_owned();
     }
     text.chars().take(length.saturating_sub(2)).chain("..".chars()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Catches a cut word that loses a letter, and a number that is parted from its sign.
+    #[test]
+    fn lines_break_between_words_and_long_words_are_cut() {
+        let word = "x".repeat(100);
+        assert_eq!(wrapped(&word, "  "), format!("{}\n  {}", &word[..78], &word[78..]));
+        let text = format!("{} 35 % of it", "y".repeat(76));
+        assert_eq!(wrapped(&text, ""), format!("{}\n35 % of it", "y".repeat(76)));
+        assert_eq!(wrapped("a\n b", ""), "a b");
+        assert_eq!(
+            (clipped("name", 4), clipped("names", 4)),
+            ("name".to_owned(), "na..".to_owned())
+        );
+    }
 }

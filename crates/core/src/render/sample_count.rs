@@ -38,8 +38,8 @@ pub fn primary_rays(
 }
 
 /// Returns the number of packets in which the tracer follows the [primary rays](primary_rays) of a
-/// tile of `width` x `height` pixels. A packet is not always full: a tile of a single pixel with one
-/// sample uses one lane.
+/// tile of `width` x `height` pixels. A packet is not always full: a single pixel with one sample
+/// uses one lane.
 ///
 /// Returns `None` for an [adaptive](RenderSettings::adaptive) lattice.
 #[must_use]

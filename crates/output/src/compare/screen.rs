@@ -258,8 +258,8 @@ fn failure(row: &Record) -> &'static str {
     }
 }
 
-/// Returns why a row may be slower than the best row with the same kind of scheduling, if its policy
-/// or its counts say so.
+/// Returns why a row may be slower than the best row of its group, if its policy or its counts say
+/// so.
 fn reason(record: &Record, best: &Record) -> String {
     let (row, other) = (&record.measurement, &best.measurement);
     let mut reasons = Vec::new();

@@ -177,10 +177,8 @@ fn who_deals_out_matters_only_if_the_figures_say_so() {
     assert_eq!(lesson(&[halves, channel]), [""; 0], "a channel does more than deal out");
     assert_eq!(
         lesson(&[halves, counter, slow]),
-        [
-            "Among those dealt out at run time slow takes 20 % longer than halves; between the others \
-          no difference is seen."
-        ]
+        ["Among those dealt out at run time slow takes 20 % longer than halves; between the \
+             others no difference is seen."]
     );
     assert_eq!(
         lesson(&[halves, slow, slower]),
