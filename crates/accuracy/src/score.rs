@@ -36,7 +36,7 @@ pub struct FamilyScore {
     pub measured: usize,
     /// The number of errors above a thousandth of `t`: the wrong root, or noise.
     pub gross: usize,
-    /// The number of errors above 1,000 ulps times the condition number, which no rounding explains.
+    /// The number of errors above 1,000 ulps times the condition number: no rounding explains them.
     pub far: usize,
     /// The number of hits with a `t` that is absent or not finite.
     pub non_finite: usize,

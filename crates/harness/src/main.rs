@@ -18,6 +18,7 @@
 //! failed; 2 the request or its input was wrong, or the machine cannot meet it; 130 interrupted.
 
 mod commands;
+mod deliver;
 mod files;
 mod image_file;
 mod input;

@@ -302,7 +302,7 @@ fn a_baseline_says_what_has_changed() {
     assert!(markdown.contains("\n| tile-queue | 1 | "), "{markdown}");
 
     let cases = [
-        ("--baseline missing.json", "missing.json: cannot be a baseline: "),
+        ("--baseline missing.json", "missing.json: cannot be read: "),
         ("--baseline old.md", "old.md: cannot be a baseline: not the JSON of a comparison"),
         ("--baseline old.json --json old.json", "old.json: is named twice"),
         (
@@ -349,79 +349,4 @@ fn scenes_stand_beside_each_other() {
         ("--scenes a.toml,./a.toml", "./a.toml is named twice: name it once"),
     ];
     expect_refusals(folder.path(), small, &cases);
-}
-
-/// Interrupts a comparison of a minute when it has started `samples` processes. All processes of
-/// the group get the signal at once, as from a terminal.
-#[cfg(target_os = "linux")]
-fn interrupted_at(samples: usize, options: &str) -> (program::Run, Option<Value>) {
-    use std::collections::BTreeSet;
-    use std::os::unix::process::CommandExt;
-    use std::process::{Command, Stdio};
-
-    let folder = folder();
-    let long = "compare --strategy row-counter --time-limit 60 --json a.json";
-    let mut program = Command::new(env!("CARGO_BIN_EXE_rayweave"))
-        .args(long.split_whitespace().chain(options.split_whitespace()))
-        .current_dir(folder.path())
-        .process_group(0)
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the program starts");
-    let mut seen = BTreeSet::new();
-    while seen.len() < samples {
-        seen.extend(children_of(program.id()));
-        assert!(program.try_wait().expect("its state").is_none(), "it ended by itself");
-    }
-    let group = format!("-{}", program.id());
-    assert!(Command::new("kill").args(["-INT", "--", &group]).status().expect("kill").success());
-    let run = program::Run::of(program.wait_with_output().expect("its output"));
-    let file = folder.path().join("a.json");
-    (run, file.exists().then(|| json(&file)))
-}
-
-#[cfg(target_os = "linux")]
-fn children_of(parent: u32) -> Vec<u32> {
-    let processes = fs::read_dir("/proc").expect("/proc").filter_map(Result::ok);
-    let numbers = processes.filter_map(|entry| entry.file_name().to_str()?.parse().ok());
-    let is_child = |number: &u32| {
-        // "pid (name) state parent ..."; the process may have ended meanwhile.
-        let stat = fs::read_to_string(format!("/proc/{number}/stat")).unwrap_or_default();
-        let rest = stat.rsplit(')').next().unwrap_or_default();
-        rest.split_whitespace().nth(1) == Some(&parent.to_string())
-    };
-    numbers.filter(is_child).collect()
-}
-
-/// Catches lost measurements, and a sample ended by the same Ctrl-C reported as a failed strategy.
-#[cfg(target_os = "linux")]
-#[test]
-fn an_interruption_shows_the_complete_rounds() {
-    // The reference's image, the warm-up of three rows, six rounds of three, and one sample more.
-    let (run, object) = interrupted_at(1 + 3 + 6 * 3 + 1, "--size 4x4 --antialiasing 0");
-    assert_eq!((run.status, run.stderr.as_str()), (130, ""), "{}", run.stdout);
-    assert!(
-        run.stdout.contains("interrupted after ") && !run.stdout.contains("failed"),
-        "{}",
-        run.stdout
-    );
-    let object = object.expect("the file");
-    let rounds = object["results"][0]["rounds"].as_u64().expect("a number") as usize;
-    assert!(rounds >= 6 && object["results"][0]["interrupted"] == true, "{object}");
-    for result in object["results"].as_array().expect("a list") {
-        assert_eq!(result["samples_ns"].as_array().map(Vec::len), Some(rounds), "{result}");
-        assert!(result["median_ns"].is_u64() && result["error"].is_null(), "{result}");
-    }
-}
-
-#[cfg(target_os = "linux")]
-#[test]
-fn an_early_interruption_reports_that_there_is_no_table() {
-    // The first sample would take minutes.
-    let (run, object) = interrupted_at(1, "--size 2000x2000 --antialiasing 32");
-    assert_eq!((run.status, run.stdout.as_str()), (130, ""), "{}", run.stderr);
-    let expected = "error: interrupted after 0 complete rounds; a table needs at least 6: \
-                    let it run longer, or use a smaller --size\n";
-    assert_eq!((run.stderr.as_str(), object), (expected, None));
 }

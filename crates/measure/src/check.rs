@@ -64,7 +64,7 @@ pub struct CheckProgress {
     pub done: usize,
     /// The number of all renderings.
     pub total: usize,
-    /// The reason for a pause of up to the timeout: the check waits for all threads to meet.
+    /// True while the check waits for all threads to meet, for up to the timeout.
     pub is_counting: bool,
 }
 

@@ -33,6 +33,9 @@ fn the_real_strategies_agree() {
     let mut told = 0;
     let verdict = check
         .run(|progress| {
+            if progress.is_counting {
+                return;
+            }
             assert_eq!(progress.done, told);
             told += 1;
             assert!(told <= progress.total);

@@ -268,8 +268,7 @@ impl<L: Lane> Slabs<L> {
 }
 
 /// Returns the numbers below `count` in a random order, the same in every run. The builder keeps
-/// the order of boxes with equal centres, and orders by size among boxes within each other are as
-/// bad as ties.
+/// the order of boxes with equal centres, and sorted sizes among nested boxes are as bad as ties.
 fn shuffled(count: usize) -> Vec<u32> {
     let mut order: Vec<u32> = (0..count as u32).collect();
     let mut point = random_points();
@@ -315,8 +314,8 @@ fn depth(bvh: &Bvh2) -> usize {
 mod tests {
     use super::*;
 
-    /// Catches boxes of which the builder merges one pair a pass, so that the hierarchy is too deep,
-    /// or takes minutes.
+    /// Catches boxes of which the builder merges one pair a pass: the hierarchy would be too deep,
+    /// or take minutes.
     #[test]
     fn boxes_in_one_place_or_a_row_are_a_hierarchy() {
         let cube = |x: f64, half: f64| {

@@ -1,5 +1,6 @@
 //! `rayweave check`: proves that all strategies render the same image.
 
+use crate::deliver;
 use crate::files::{PendingFile, distinct_files};
 use crate::input::Input;
 use crate::options::{
@@ -88,8 +89,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let facts = output::machine::text(&machine);
     let left_out = left_out_line(&arguments.strategy).map(|line| line + "\n").unwrap_or_default();
     let text = output::check::text(&verdict);
-    print(&format!("{}\n{facts}\n\n{}\n{left_out}", input.describe(), text.trim_end()))?;
-    json.map_or(Ok(()), |file| file.finish(output::check::json(&verdict, &machine).as_bytes()))?;
+    deliver::all([
+        deliver::write(json, || Ok(output::check::json(&verdict, &machine))),
+        print(&format!("{}\n{facts}\n\n{}\n{left_out}", input.describe(), text.trim_end())),
+    ])?;
     Ok(if verdict.passed() { Outcome::Passed } else { Outcome::Failed })
 }
 

@@ -1,5 +1,6 @@
 //! `rayweave compare`, and `rayweave` alone: times all strategies side by side.
 
+use crate::deliver;
 use crate::files::{PendingFile, distinct_files, named_twice};
 use crate::input::Input;
 use crate::interrupt::Interrupt;
@@ -134,8 +135,13 @@ pub fn run(scene: Option<&Path>, options: &Options) -> Result<Outcome, String> {
     if let Some(baseline) = &baseline {
         results = results.compared_with(baseline);
     }
-    print(&view(&results, &loaded, options))?;
-    files.finish(&results)?;
+    let Files { json, csv, markdown } = files;
+    deliver::all([
+        deliver::write(json, || Ok(results.json())),
+        deliver::write(csv, || Ok(results.csv())),
+        deliver::write(markdown, || Ok(results.markdown())),
+        print(&view(&results, &loaded, options)),
+    ])?;
     let interrupted =
         !results.not_measured.is_empty() || results.results.iter().any(|r| r.interrupted);
     Ok(match (results.passed(), interrupted) {
@@ -212,20 +218,12 @@ impl Files {
         let create = |path: &Option<PathBuf>| path.as_deref().map(PendingFile::create).transpose();
         Ok(Self { json: create(json)?, csv: create(csv)?, markdown: create(markdown)? })
     }
-
-    fn finish(self, results: &Results) -> Result<(), String> {
-        let views = [
-            (self.json, Results::json as fn(&Results) -> String),
-            (self.csv, Results::csv),
-            (self.markdown, Results::markdown),
-        ];
-        let mut wanted = views.into_iter().filter_map(|(file, view)| Some((file?, view)));
-        wanted.try_for_each(|(file, view)| file.finish(view(results).as_bytes()))
-    }
 }
 
 fn read_baseline(path: &Path) -> Result<Results, String> {
-    let text = fs::read_to_string(path).map_err(|e| no_baseline(path, &e.to_string()))?;
+    let name = path.display().to_string();
+    let bytes = rayweave_scene_file::bytes_of(path, &name).map_err(|e| e.to_string())?;
+    let text = String::from_utf8(bytes).map_err(|e| no_baseline(path, &e.to_string()))?;
     Results::parse(&text).map_err(|reason| no_baseline(path, &reason))
 }
 

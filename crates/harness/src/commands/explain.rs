@@ -1,5 +1,6 @@
 //! `rayweave explain`: shows where the time of each thread goes.
 
+use crate::deliver;
 use crate::files::{PendingFile, distinct_files};
 use crate::image_file::ImageFormat;
 use crate::input::Input;
@@ -111,10 +112,12 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
         machine: &machine,
         noise: &noise,
     };
-    print(&format!("{}\n\n{}\n", input.describe(), view.text()))?;
-    json.map_or(Ok(()), |file| file.finish(view.json().as_bytes()))?;
-    trace.map_or(Ok(()), |file| file.finish(view.trace().as_bytes()))?;
-    pictures.map_or(Ok(()), |files| write_images(files, &view))?;
+    deliver::all([
+        deliver::write(json, || Ok(view.json())),
+        deliver::write(trace, || Ok(view.trace())),
+        pictures.map_or(Ok(()), |files| write_images(files, &view)),
+        print(&format!("{}\n\n{}\n", input.describe(), view.text())),
+    ])?;
     Ok(Outcome::Passed)
 }
 
@@ -140,12 +143,12 @@ fn image_files(folder: &Path, strategies: &[Strategy<'_>]) -> Result<Vec<ImageFi
 }
 
 fn write_images(files: Vec<ImageFiles>, view: &ExplanationView<'_>) -> Result<(), String> {
-    for (files, row) in files.into_iter().zip(&view.explanation.rows) {
-        files.timeline.finish(view.timeline(row)?.as_bytes())?;
-        files
-            .owners
-            .finish(&ImageFormat::Png.encode(&view.owners(row).map_err(|e| e.to_string())?)?)?;
-        files.cost.finish(view.cost(row)?.as_bytes())?;
-    }
-    Ok(())
+    deliver::all(files.into_iter().zip(&view.explanation.rows).flat_map(|(files, row)| {
+        let owners = || ImageFormat::Png.encode(&view.owners(row).map_err(|e| e.to_string())?);
+        [
+            deliver::write(Some(files.timeline), || view.timeline(row)),
+            deliver::write(Some(files.owners), owners),
+            deliver::write(Some(files.cost), || view.cost(row)),
+        ]
+    }))
 }

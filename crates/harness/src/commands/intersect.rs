@@ -1,5 +1,6 @@
 //! `rayweave intersect`: runs hard cases through the tracer's kernel and scores the answers.
 
+use crate::deliver;
 use crate::files::{PendingFile, distinct_files};
 use crate::options::FormulasOption;
 use crate::{Outcome, print};
@@ -69,10 +70,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let times: Vec<Option<f64>> = scores.iter().map(time).collect();
     let table = rayweave_output::accuracy::table(&scores, &times);
     match out {
-        Some(file) => {
-            file.finish(&lines)?;
-            print(&table)?;
-        }
+        Some(file) => deliver::all([file.finish(&lines), print(&table)])?,
         None => {
             print(&String::from_utf8_lossy(&lines))?;
             // The table is additional: a closed standard error is no failure.

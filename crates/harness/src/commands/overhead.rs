@@ -1,5 +1,6 @@
 //! `rayweave overhead`: measures the costs of strategies beyond their work.
 
+use crate::deliver;
 use crate::files::PendingFile;
 use crate::options::{all_threads, chosen, parse_seconds, parse_threads, strategy_parser};
 use crate::with_noise::with_noise;
@@ -53,7 +54,9 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     });
     let study = study.map_err(|e| e.to_string())?;
     let view = OverheadView { study: &study, machine: &machine, noise: &noise };
-    print(&format!("{}\n", view.table()))?;
-    json.map_or(Ok(()), |file| file.finish(view.json().as_bytes()))?;
+    deliver::all([
+        deliver::write(json, || Ok(view.json())),
+        print(&format!("{}\n", view.table())),
+    ])?;
     Ok(if study.passed() { Outcome::Passed } else { Outcome::Failed })
 }

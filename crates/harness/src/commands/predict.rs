@@ -1,5 +1,6 @@
 //! `rayweave predict`: predicts speed-ups on more threads.
 
+use crate::deliver;
 use crate::files::{PendingFile, distinct_files};
 use crate::input::Input;
 use crate::options::{
@@ -93,8 +94,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
         machine: &machine,
         noise: &noise,
     };
-    print(&format!("{}\n{}\n", view.table(), input.arithmetic_line()))?;
-    json.map_or(Ok(()), |file| file.finish(view.json().as_bytes()))?;
-    svg.map_or(Ok(()), |file| file.finish(view.svg()?.as_bytes()))?;
+    deliver::all([
+        deliver::write(json, || Ok(view.json())),
+        deliver::write(svg, || view.svg()),
+        print(&format!("{}\n{}\n", view.table(), input.arithmetic_line())),
+    ])?;
     Ok(if forecast.comparison.passed() { Outcome::Passed } else { Outcome::Failed })
 }

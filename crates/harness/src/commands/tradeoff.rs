@@ -1,5 +1,6 @@
 //! `rayweave tradeoff`: measures speed and error of every setting of the tracer.
 
+use crate::deliver;
 use crate::files::{PendingFile, distinct_files};
 use crate::image_file::ImageFormat;
 use crate::input;
@@ -97,14 +98,17 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
         target_psnr: arguments.target_psnr,
         machine: &machine,
     };
-    print(&format!("{}\n", view.table()))?;
-    json.map_or(Ok(()), |file| file.finish(view.json().as_bytes()))?;
-    csv.map_or(Ok(()), |file| file.finish(view.csv().as_bytes()))?;
-    svg.map_or(Ok(()), |file| file.finish(view.svg()?.as_bytes()))?;
-    if let (Some(folder), Some(file)) = (&arguments.pictures, reference_file) {
-        file.finish(&ImageFormat::Png.encode(&study.reference.image)?)?;
-        write_images(folder, &scene, &study, size)?;
-    }
+    deliver::all([
+        deliver::write(json, || Ok(view.json())),
+        deliver::write(csv, || Ok(view.csv())),
+        deliver::write(svg, || view.svg()),
+        deliver::write(reference_file, || ImageFormat::Png.encode(&study.reference.image)),
+        arguments
+            .pictures
+            .as_ref()
+            .map_or(Ok(()), |folder| write_images(folder, &scene, &study, size)),
+        print(&format!("{}\n", view.table())),
+    ])?;
     Ok(if study.repeatable { Outcome::Passed } else { Outcome::Failed })
 }
 
