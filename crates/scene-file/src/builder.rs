@@ -96,9 +96,8 @@ impl SceneBuilder {
         let camera = self.camera.ok_or_else(missing)?;
         let index = self.refs.resolve(&self.materials, file)?;
         let mut triangles = MeshTriangles::after(self.triangles);
-        for mesh in self.meshes {
-            mesh.read(file, folder, &mut triangles)?;
-        }
+        let read = |mesh: Mesh| mesh.read(file, folder, &mut triangles);
+        let meshes = self.meshes.into_iter().map(read).collect::<Result<_>>()?;
         let mut scene = Scene {
             camera,
             render: self.render.unwrap_or_default(),
@@ -115,6 +114,6 @@ impl SceneBuilder {
             .chain(scene.cylinders.iter_mut().map(|cylinder| &mut cylinder.material));
         numbers.for_each(|material| *material = index[*material]);
         let image = self.image.unwrap_or_default();
-        Ok(SceneFile { image, scene, skipped_triangles: triangles.skipped })
+        Ok(SceneFile { image, scene, skipped_triangles: triangles.skipped, meshes })
     }
 }

@@ -20,6 +20,7 @@ pub use error::{Position, SceneFileError};
 pub use mesh::MAX_MESH_TRIANGLES;
 pub use read_file::{MAX_BYTES, bytes_of};
 pub use scene_file::{ImageSize, MAX_SIDE, SceneFile};
+pub use wording::path as path_text;
 
 use std::path::Path;
 
@@ -44,7 +45,7 @@ pub fn report_scene() -> SceneFile {
 /// everything that [`parse`] refuses. Last come the files of meshes: the same of their paths, then
 /// numbers, corners, a mesh without any triangle, or more than [`MAX_MESH_TRIANGLES`] in all.
 pub fn load(path: &Path) -> Result<SceneFile, SceneFileError> {
-    let name = path.display().to_string();
+    let name = wording::path(path);
     let bytes = bytes_of(path, &name)?;
     parse_in(path.parent(), &bytes, &name)
 }

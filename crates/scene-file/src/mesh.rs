@@ -7,7 +7,7 @@ use rayweave_core::scene::{SceneFault, Triangle};
 
 use crate::error::{Result, Source};
 use crate::node::Mention;
-use crate::{obj, read_file};
+use crate::{obj, read_file, wording};
 
 /// The most triangles that the meshes of a scene may have together: 8,388,608. A face of a few
 /// bytes can stand for any number of them, so the size of the files alone is no limit.
@@ -45,13 +45,13 @@ impl Mesh {
         Err(SceneFault { key: "path", expected, found: self.path.display().to_string() })
     }
 
-    /// Appends the mesh to `triangles`. Its file is in the `folder` of `scene`.
+    /// Appends the mesh to `triangles`. Its file, which is returned, is in the `folder` of `scene`.
     pub(crate) fn read(
         self,
         scene: Source,
         folder: Option<&Path>,
         triangles: &mut MeshTriangles,
-    ) -> Result<()> {
+    ) -> Result<PathBuf> {
         let expected = "expected an OBJ file with a triangle that has an area";
         let empty = format!("{expected}, found {}", self.mention.written);
         let Some(folder) = folder else {
@@ -59,11 +59,15 @@ impl Mesh {
             return Err(self.mention.error(scene, &format!("{empty}; {hint}")));
         };
         let file = folder.join(&self.path);
-        let name = file.display().to_string();
+        let name = wording::path(&file);
         let bytes = read_file::bytes_of(&file, &name)?;
         let before = triangles.all.len();
         obj::read(&bytes, &name, |vertices| triangles.add(vertices, self.material))?;
-        if triangles.all.len() == before { Err(self.mention.error(scene, &empty)) } else { Ok(()) }
+        if triangles.all.len() == before {
+            Err(self.mention.error(scene, &empty))
+        } else {
+            Ok(file)
+        }
     }
 }
 

@@ -1,5 +1,7 @@
 //! The result of reading a scene file.
 
+use std::path::PathBuf;
+
 use rayweave_core::Scene;
 use rayweave_core::scene::SceneFault;
 
@@ -12,6 +14,8 @@ pub struct SceneFile {
     pub scene: Scene,
     /// The number of triangles that were left out of the scene's meshes because they have no area.
     pub skipped_triangles: usize,
+    /// The files of the scene's meshes, in the order of the file.
+    pub meshes: Vec<PathBuf>,
 }
 
 /// The size of an image in pixels.

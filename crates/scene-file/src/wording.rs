@@ -1,5 +1,7 @@
 //! Text from a file made fit for a message: on one line, short, and with a suggestion for a typo.
 
+use std::path::Path;
+
 /// The number of characters of an echoed value.
 const LONGEST: usize = 60;
 /// The number of names in a list of what would be right.
@@ -8,6 +10,14 @@ const MOST_NAMES: usize = 10;
 /// Returns `text` without anything that a terminal would obey or hide.
 pub(crate) fn escaped(text: &str) -> String {
     text.chars().map(printable).collect()
+}
+
+/// Returns the path as results and messages show it: control characters, and bytes that are not
+/// UTF-8, are escaped.
+#[must_use]
+pub fn path(path: &Path) -> String {
+    let bytes = || path.as_os_str().as_encoded_bytes().escape_ascii().to_string();
+    path.to_str().map_or_else(bytes, escaped)
 }
 
 /// Returns [`escaped`] text, cut to a length that leaves a message readable.
@@ -48,7 +58,8 @@ pub(crate) fn instead(name: &str, known: &[&str]) -> String {
 fn printable(character: char) -> String {
     match character {
         '"' | '\'' | '\\' => character.into(),
-        _ => character.escape_debug().collect(),
+        // Behind a letter, so that an accent or vowel sign of its own stays.
+        _ => format!("x{character}").escape_debug().skip(1).collect(),
     }
 }
 

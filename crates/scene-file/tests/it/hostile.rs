@@ -6,7 +6,9 @@ use std::path::Path;
 use proptest::collection;
 use proptest::prelude::*;
 use proptest::sample::{self, Index};
-use rayweave_scene_file::{MAX_BYTES, Position, REPORT_SCENE, SceneFileError, load, parse};
+use rayweave_scene_file::{
+    MAX_BYTES, Position, REPORT_SCENE, SceneFileError, load, parse, path_text,
+};
 
 fn refusal(bytes: impl AsRef<[u8]>) -> SceneFileError {
     let error = parse(bytes.as_ref(), "x.toml").expect_err("malformed");
@@ -94,6 +96,24 @@ fn long_input_does_not_make_a_long_message() {
 fn the_name_of_the_file_is_shown_without_its_control_characters() {
     let error = parse(b"", "a\nb\x1b[31m.toml").expect_err("an empty file");
     assert_eq!(error.to_string(), "a\\nb\\u{1b}[31m.toml:1:1: camera: missing, but required");
+}
+
+#[cfg(unix)]
+#[test]
+fn the_text_of_a_path_is_printable() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt;
+    for (path, text) in [
+        (b"scenes/r\xc3\xa4um \"1\".toml".as_slice(), "scenes/r\u{e4}um \"1\".toml"),
+        // An accent of its own, and a vowel sign.
+        (b"e\xcc\x81.toml", "e\u{301}.toml"),
+        (b"a\n\x1b[31m\x7f.toml", "a\\n\\u{1b}[31m\\u{7f}.toml"),
+        // Neither the reversal of text nor what XML does not allow.
+        (b"a\xe2\x80\xae\xef\xbf\xbe", "a\\u{202e}\\u{fffe}"),
+        (b"a\xff\n", "a\\xff\\n"),
+    ] {
+        assert_eq!(path_text(Path::new(OsStr::from_bytes(path))), text);
+    }
 }
 
 #[test]

@@ -91,7 +91,10 @@ fn every_key_arrives_where_it_belongs() {
         cylinders: vec![cylinder(0)],
     };
     let image = ImageSize { width: 500, height: 500 };
-    assert_eq!(sound(&everything()), SceneFile { image, scene, skipped_triangles: 0 });
+    assert_eq!(
+        sound(&everything()),
+        SceneFile { image, scene, skipped_triangles: 0, meshes: Vec::new() }
+    );
 }
 
 #[test]
@@ -121,7 +124,7 @@ fn optional_keys_have_the_defaults_of_the_model() {
         cylinders: vec![],
     };
     let image = ImageSize::default();
-    assert_eq!(sound(CAMERA), SceneFile { image, scene, skipped_triangles: 0 });
+    assert_eq!(sound(CAMERA), SceneFile { image, scene, skipped_triangles: 0, meshes: Vec::new() });
 }
 
 #[test]
@@ -193,7 +196,10 @@ fn the_built_in_scene_is_that_of_the_lab_report() {
         cylinders: vec![cylinder(green)],
     };
     let image = ImageSize { width: 500, height: 500 };
-    assert_eq!(report_scene(), SceneFile { image, scene, skipped_triangles: 0 });
+    assert_eq!(
+        report_scene(),
+        SceneFile { image, scene, skipped_triangles: 0, meshes: Vec::new() }
+    );
 }
 
 #[test]
