@@ -112,7 +112,7 @@ fn a_file_may_be_of_more_than_one_mesh() {
 #[test]
 fn a_corner_is_the_number_of_a_vertex_whatever_is_behind_its_slash() {
     let plain = triangles(format!("{SQUARE}f 1 2 3\n"));
-    for face in ["1/7 2/8 3/9", "1//7 2//8 3//9", "1/7/7 2/8/8 3/9/9", "1/ 2 3//x", "+1 02 3"] {
+    for face in ["1/7 2/8 3/9", "1//7 2//8 3//9", "1/7/7 2/8/8 3/9/9", "1/-1 2 3//-2", "+1 02 3"] {
         assert_eq!(triangles(format!("{SQUARE}f {face}\n")), plain, "{face}");
     }
 }
@@ -130,7 +130,7 @@ fn a_negative_corner_counts_from_the_line_up() {
 fn other_lines_and_words_are_ignored() {
     let plain = triangles(format!("{SQUARE}f 1 2 3\n"));
     for obj in [
-        "# v 5 5 5\n\n \t\nv 0 0 0 1.0\nv 1 0 0 0.5 0.5 0.5\nv 1 1 0 # f 1 2 3\nf 1 2 3# 9\n",
+        "# v 5 5 5\n\n \t\nv 0 0 0 1.0\nv 1 0 0 0.5 0.5 0.5\nv 1 1 0 # f 1 2 3\nf 1 2 3 #9\n",
         "mtllib a.mtl\no name\ng a b\ns off\nusemtl red\nv 0 0 0\nv 1 0 0\nv 1 1 0\n\
          f 1 2 3\nl 1 9\np 0\n",
         "vn 9 9 9\nvt 9 9\nvp 9\nv 0 0 0\nvn nan\nv 1 0 0 nan x\nv 1 1 0\nfo 1 2\nF 1 2\n\
@@ -169,6 +169,7 @@ fn an_error_has_the_line_and_column_of_the_obj_file() {
     let number = "expected a finite number, found";
     let face = "expected `f` and three corners or more, found";
     let corner = "expected the number of one of the 4 vertices above, found";
+    let form = "expected a corner as in `1`, `1/2`, `1//3` or `1/2/3`, found";
     for (line, column, expected, found) in [
         ("v 1 2", 1, vertex, "v 1 2"),
         ("  v 1 2 # 3", 3, vertex, "v 1 2"),
@@ -190,7 +191,17 @@ fn an_error_has_the_line_and_column_of_the_obj_file() {
         ("f 1 2 /3", 7, corner, "/3"),
         ("f 1 2 99999999999999999999", 7, corner, "99999999999999999999"),
         ("f 1 2 -9223372036854775808", 7, corner, "-9223372036854775808"),
-        ("f 1 2 \\", 7, corner, "\\"),
+        ("f 1 2 3# 9", 7, corner, "3#"),
+        ("v 1 2 -1.#IND", 7, number, "-1.#IND"),
+        ("v 1.#QNAN 2 3", 3, number, "1.#QNAN"),
+        ("f 1 2 \\ 3", 7, corner, "\\"),
+        ("f 1/x/! 2 3", 3, form, "1/x/!"),
+        ("f 1 2/ 3", 5, form, "2/"),
+        ("f 1 2// 3", 5, form, "2//"),
+        ("f 1 2 3/1/", 7, form, "3/1/"),
+        ("f 1 2 3/1/1/1", 7, form, "3/1/1/1"),
+        ("f 1 2 3//x", 7, form, "3//x"),
+        ("f 1 2 3/1.5", 7, form, "3/1.5"),
     ] {
         let message = format!("a.obj:5:{column}: {expected} `{found}`");
         // What comes below the line is no help: not the vertices, and not the sound face.
@@ -203,6 +214,90 @@ fn an_error_has_the_line_and_column_of_the_obj_file() {
     assert_eq!(error, "a.obj:1:3: expected the number of one of the 0 vertices above, found `1`");
     let error = of_obj(b"g caf\xe9\nv 1 2 \xe9\x1b[31m\n").expect_err("no number");
     assert_eq!(error, "a.obj:2:7: expected a finite number, found `\u{fffd}\\u{1b}[31m`");
+}
+
+#[test]
+fn a_backslash_at_the_end_of_a_line_continues_it() {
+    let plain = triangles(format!("{SQUARE}f 1 2 3\n"));
+    for obj in [
+        "v 0 0 0\nv \\\n1 0 \\\n0\nv 1 1 0\nf 1 2 \\\n3\n",
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1\\\n2\\\n\\\n   3\n",
+        "\\\nv 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3 \\\n",
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 \\\n3 # 4 \\\nusemtl red",
+        // The next line belongs to a statement that is ignored.
+        "v 0 0 0\nv 1 0 0\ncurv 0 1 \\\nv 5 5 5\nv 1 1 0\nf 1 2 3\n",
+        // But a path in a comment continues nothing.
+        "# C:\\models\\\nv 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n",
+    ] {
+        assert_eq!(triangles(obj), plain, "{obj}");
+        assert_eq!(triangles(obj.replace('\n', "\r\n")), plain, "{obj}");
+    }
+    for (lines, place, message) in [
+        (
+            "f 1 2 \\\n 9\nf 1 2 3",
+            "6:2",
+            "expected the number of one of the 4 vertices above, found `9`",
+        ),
+        (
+            "f 1 \\\n 2 \\\n\nf 1 2 3",
+            "5:1",
+            "expected `f` and three corners or more, found `f 1 2`",
+        ),
+        ("v 1 \\\n\\\n2\\\nx", "8:1", "expected a finite number, found `x`"),
+        ("v 1 \\\n2 3\nv x", "7:3", "expected a finite number, found `x`"),
+        ("f 1 2 \\", "5:7", "expected the number of one of the 4 vertices above, found `\\`"),
+    ] {
+        let error = of_obj(format!("{SQUARE}{lines}")).expect_err(lines);
+        assert_eq!(error, format!("a.obj:{place}: {message}"));
+        let error = of_obj(format!("{SQUARE}{lines}").replace('\n', "\r\n")).expect_err(lines);
+        assert_eq!(error, format!("a.obj:{place}: {message}"));
+    }
+}
+
+#[test]
+fn a_hash_within_a_word_begins_no_comment() {
+    let obj = format!("usemtl #red\no a#b\n{SQUARE}g f#1\nf 1 2 3\n");
+    assert_eq!(triangles(obj), triangles(format!("{SQUARE}f 1 2 3\n")));
+}
+
+#[test]
+fn a_file_that_is_no_text_of_lines_says_what_it_is() {
+    let obj = format!("{SQUARE}f 1 2 3\n");
+    let utf_16 = |mark: &str, bytes: fn(u16) -> [u8; 2]| {
+        format!("{mark}{obj}").encode_utf16().flat_map(bytes).collect::<Vec<u8>>()
+    };
+    let unicode = "UTF-16: save it as UTF-8";
+    for (bytes, found) in [
+        (utf_16("\u{feff}", u16::to_le_bytes), unicode),
+        (utf_16("\u{feff}", u16::to_be_bytes), unicode),
+        (utf_16("", u16::to_le_bytes), unicode),
+        (utf_16("", u16::to_be_bytes), unicode),
+        (b"\x1f\x8b\x08\0\0\0\0\0".to_vec(), "a file compressed by gzip: decompress it"),
+        (b"PK\x03\x04\x14\0".to_vec(), "a zip archive: unpack it"),
+    ] {
+        let error = of_obj(bytes).expect_err(found);
+        assert_eq!(error, format!("a.obj: expected an OBJ file in ASCII or UTF-8, found {found}"));
+    }
+    let message = "a line that ends with a carriage return alone: end lines with LF or CRLF";
+    let error = of_obj(obj.replace('\n', "\r")).expect_err("CR only");
+    assert_eq!(error, format!("a.obj:1:8: {message}"));
+    // Else the second vertex would be lost.
+    let error = of_obj("v 0 0 0\nv 1 0 0\rv 1 1 0\nf 1 2 1\n").expect_err("one CR");
+    assert_eq!(error, format!("a.obj:2:8: {message}"));
+    assert_eq!(triangles(format!("{SQUARE}f 1 2 3\r\r\n\r")).len(), 1);
+}
+
+#[test]
+fn a_scene_names_the_files_of_its_meshes() {
+    let scene = format!("{SCENE}{}{}", mesh("b.obj", "red"), mesh("./a.obj", "blue"));
+    let obj = format!("{SQUARE}f 1 2 3");
+    let folder = folder(&[
+        ("a.toml", scene.as_bytes()),
+        ("a.obj", obj.as_bytes()),
+        ("b.obj", obj.as_bytes()),
+    ]);
+    let file = loaded(folder.path()).expect("sound");
+    assert_eq!(file.meshes, [folder.path().join("b.obj"), folder.path().join("a.obj")]);
 }
 
 #[test]
