@@ -12,7 +12,7 @@ use crate::error::{Result, Source};
 use crate::keys;
 use crate::material_refs::MaterialRefs;
 use crate::mesh::{Mesh, MeshTriangles};
-use crate::node::Node;
+use crate::node::{Definition, Node};
 use crate::scene_file::{ImageSize, SceneFile};
 
 /// The keys at the top of a scene file.
@@ -39,6 +39,8 @@ pub(crate) struct SceneBuilder {
     triangles: Vec<Triangle>,
     meshes: Vec<Mesh>,
     cylinders: Vec<Cylinder>,
+    /// True if `[material]` itself, not only a material in it, is defined. It may not be again.
+    material_is_defined: bool,
     /// The keys of earlier parts that may not come again: complete, or written inline.
     closed: BTreeSet<String>,
 }
@@ -48,9 +50,15 @@ impl SceneBuilder {
     pub(crate) fn add(&mut self, part: &Node) -> Result<()> {
         part.allow(&KEYS)?;
         let table = part.table()?;
-        if let Some(key) = table.keys().find(|key| self.closed.contains(key.get_ref().as_ref())) {
+        let material = part.get("material");
+        let again = self.material_is_defined
+            && material.is_some_and(|node| node.definition() == Definition::Header);
+        let is_closed = |name: &str| self.closed.contains(name) || (again && name == "material");
+        if let Some(key) = table.keys().find(|key| is_closed(key.get_ref())) {
             return Err(part.duplicate(key));
         }
+        self.material_is_defined |=
+            material.is_some_and(|node| node.definition() != Definition::Inner);
         if let Some(node) = part.get("image") {
             self.image = Some(keys::image(&node)?);
         }
@@ -61,7 +69,7 @@ impl SceneBuilder {
             self.render = Some(keys::render(&node)?);
         }
         part.each("light", &mut self.lights, keys::light)?;
-        if let Some(node) = part.get("material") {
+        if let Some(node) = material {
             self.add_materials(&node)?;
         }
         let refs = &mut self.refs;

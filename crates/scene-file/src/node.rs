@@ -38,6 +38,17 @@ enum KeyPath<'a> {
     Index(&'a KeyPath<'a>, usize),
 }
 
+/// The way in which a table is written in a part.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(crate) enum Definition {
+    /// By a header `[material]`.
+    Header,
+    /// Inline or by dotted keys such as `material.red`, without a header.
+    Keys,
+    /// Only by headers of tables in it, such as `[material.red]`.
+    Inner,
+}
+
 /// A string that may turn out to name nothing.
 pub(crate) struct Mention {
     offset: usize,
@@ -196,6 +207,19 @@ impl<'a> Node<'a> {
             DeValue::Array(_) => self.text().starts_with("[["),
             DeValue::Table(_) => !self.text().starts_with('{'),
             _ => false,
+        }
+    }
+
+    /// Returns how this table is written.
+    pub(crate) fn definition(&self) -> Definition {
+        // The span is that of the header if there is one, else that of a key or a value.
+        let before = self.part.text.get(..self.value.span().start).unwrap_or_default();
+        if self.text().starts_with('[') {
+            Definition::Header
+        } else if before.trim_end().ends_with('[') {
+            Definition::Inner
+        } else {
+            Definition::Keys
         }
     }
 

@@ -125,6 +125,39 @@ fn a_material_of_another_part_is_not_defined_again() {
     assert_eq!(refusal(&format!("{text}{LATE}")), expected);
 }
 
+/// TOML lets a table be defined once, and tables within it be added later.
+#[test]
+fn the_table_of_materials_is_defined_once() {
+    let camera = "[camera]\nposition = [0, 0, 2]\nlook_at = [0, 0, 0]\nup = [0, 1, 0]\n\
+                  focal_length = 2\nscreen_width = 2\n";
+    let header = "[material]\nother = { color = [0, 0, 0] }\n";
+    let dotted = "material.late.color = [0, 0, 0]\n";
+    for (first, later, sound_again) in [
+        (format!("{camera}[material]\n{}", dotted.replace("material.", "")), header, false),
+        (format!("{dotted}{camera}"), header, false),
+        (format!("{camera}{LATE}[material]\n"), "[ material ]\n", false),
+        (format!("{camera}{LATE}"), header, true),
+        (format!("{camera}[material]\n{LATE}"), "[material.other]\ncolor = [0, 0, 0]\n", true),
+    ] {
+        // In one part, and in two.
+        for entries in ["", &entries()] {
+            let text = format!("{first}{entries}{later}");
+            if sound_again {
+                sound(&text);
+            } else {
+                let error = refusal(&text);
+                let line = format!("{first}{entries}").lines().count() + 1;
+                assert!(error.starts_with(&format!("a.toml:{line}:")), "{error}");
+                assert!(error.ends_with("duplicate key, found `material`"), "{error}");
+            }
+        }
+        if sound_again && later == header {
+            let twice = format!("{first}{}{later}{}[material]\n", entries(), entries());
+            assert!(refusal(&twice).ends_with("duplicate key, found `material`"));
+        }
+    }
+}
+
 #[test]
 fn headers_do_not_add_to_inline_values() {
     let camera = "[camera]\nposition = [0, 0, 2]\nlook_at = [0, 0, 0]\nup = [0, 1, 0]\n\
