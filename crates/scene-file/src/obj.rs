@@ -69,8 +69,8 @@ fn other_format(bytes: &[u8]) -> Option<&'static str> {
 
 /// Returns the first carriage return within a line. Whatever is behind it would be lost silently.
 fn lone_carriage_return(bytes: &[u8]) -> Option<usize> {
-    let mut returns = (0..bytes.len()).filter(|&index| bytes[index] == b'\r');
-    returns.find(|index| bytes.get(index + 1).is_some_and(|next| !b"\r\n".contains(next)))
+    let mut pairs = bytes.windows(2);
+    pairs.position(|pair| pair[0] == b'\r' && pair[1] != b'\r' && pair[1] != b'\n')
 }
 
 /// Splits off the first statement: a line, and every line that a `\` continues it with. It is
@@ -92,6 +92,10 @@ fn split_statement(text: &[u8]) -> (&[u8], &[u8]) {
 
 /// Returns the start of the comment in a line: a `#` within a word begins none.
 fn comment(line: &[u8]) -> Option<usize> {
+    // Most lines have none, which is quick to see.
+    if !line.contains(&b'#') {
+        return None;
+    }
     let begins_word = |index: usize| index == 0 || line[index - 1].is_ascii_whitespace();
     (0..line.len()).find(|&index| line[index] == b'#' && begins_word(index))
 }
