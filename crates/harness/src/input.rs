@@ -1,5 +1,6 @@
 //! Loads the scene that the command line asks for.
 
+use crate::files::{Use, claim};
 use crate::options::{PrecisionOption, SceneOptions, SwitchOption};
 use rayweave_contract::{Image, ImageError, Work};
 use rayweave_core::precision::PrecisionEstimate;
@@ -10,15 +11,13 @@ use std::path::Path;
 
 /// Loads the scene at `path`, or the lab report's. Returns its name in results, too.
 pub fn load(path: Option<&Path>) -> Result<(String, SceneFile), String> {
-    Ok(match path {
-        Some(path) => {
-            // Escaped where it is not UTF-8, so that two names stay two.
-            let bytes = || path.as_os_str().as_encoded_bytes().escape_ascii().to_string();
-            let name = path.to_str().map_or_else(bytes, str::to_owned);
-            (name, scene_file::load(path).map_err(|e| e.to_string())?)
-        }
-        None => ("report (built in)".to_owned(), scene_file::report_scene()),
-    })
+    let Some(path) = path else {
+        return Ok(("report (built in)".to_owned(), scene_file::report_scene()));
+    };
+    let file = scene_file::load(path).map_err(|e| e.to_string())?;
+    claim(path, Use::Read)?;
+    file.meshes.iter().try_for_each(|mesh| claim(mesh, Use::Read))?;
+    Ok((scene_file::path_text(path), file))
 }
 
 /// The largest number of pixels of an image in which each may be a recorded piece.
