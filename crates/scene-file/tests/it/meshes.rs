@@ -256,7 +256,8 @@ fn a_backslash_at_the_end_of_a_line_continues_it() {
 
 #[test]
 fn a_hash_within_a_word_begins_no_comment() {
-    let obj = format!("usemtl #red\no a#b\n{SQUARE}g f#1\nf 1 2 3\n");
+    // A comment would not be continued.
+    let obj = format!("usemtl a#b \\\nv 9 9 9\n{SQUARE}g f#1\nf 1 2 3\n");
     assert_eq!(triangles(obj), triangles(format!("{SQUARE}f 1 2 3\n")));
 }
 
