@@ -5,11 +5,13 @@ use crate::image_file::ImageFormat;
 use crate::input::Input;
 use crate::options::{SceneOptions, TileOption, all_threads, parse_threads, strategy_parser};
 use crate::progress::ProgressWork;
-use crate::{Outcome, print};
+use crate::{Outcome, print, warn};
 use clap::Args;
-use rayweave_contract::{Plan, Strategy, Work};
+use rayweave_contract::{Image, Plan, Strategy, Work};
 use rayweave_core::{Analysis, Execution};
 use rayweave_measure::machine::Machine;
+use rayweave_scene_file::path_text;
+use std::io::{self, IsTerminal};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -50,20 +52,33 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     // A strategy without threads of its own computes on one, whatever the request is.
     let computing = strategy.threads.computing_threads(threads);
     let mut image = input.image()?;
+    // Reserved until the image is written: memory runs out before the work or not at all.
+    let reserved = reserve(format.memory(input.width)).ok_or_else(|| {
+        let (width, height) = (input.width, input.height);
+        format!("no memory to write an image of {width} x {height} pixels: choose a smaller size")
+    })?;
     let begin = Instant::now();
     let work = input.work(input.width, input.height)?;
     let preparing = begin.elapsed().as_secs_f64();
     let mut renderer = strategy.prepare(plan).map_err(|e| e.to_string())?;
-    let progress = ProgressWork::new(&*work, image.pixels().len() as u64);
-    // The bar takes time, so it is used only where it is visible.
-    let work: &dyn Work = if progress.is_seen() { &progress } else { &*work };
+    // The bar takes time and a thread, so there is none where it is not visible.
+    let progress = (io::stderr().is_terminal())
+        .then(|| ProgressWork::new(&*work, image.pixels().len() as u64))
+        .filter(ProgressWork::is_seen);
+    let work: &dyn Work = progress.as_ref().map_or(&*work, |progress| progress);
     let begin = Instant::now();
     let result = renderer.render(work, &mut image);
     let seconds = begin.elapsed().as_secs_f64();
-    progress.finish();
+    if let Some(progress) = progress {
+        progress.finish();
+    }
     result.map_err(|e| e.to_string())?;
 
-    file.finish(&format.encode(&image)?)?;
+    drop(reserved);
+    file.finish_with(|file| format.write(&image, file))?;
+    if let Some(warning) = not_finite(&image) {
+        warn(&warning);
+    }
     let stats = if arguments.stats { stats(&input, preparing)? } else { String::new() };
     print(&format!(
         "{}\n{}, threads: {computing}, {seconds:.6} s, digest {}\n{stats}{}\nwritten to {}\n",
@@ -71,9 +86,30 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
         strategy.name,
         image.digest().short(),
         rayweave_output::machine::text(&Machine::here()),
-        path.display(),
+        path_text(&path),
     ))?;
     Ok(Outcome::Passed)
+}
+
+/// Returns a block of memory of this size, if there is one.
+fn reserve(bytes: usize) -> Option<Vec<u8>> {
+    let mut block = Vec::new();
+    block.try_reserve_exact(bytes).ok()?;
+    Some(block)
+}
+
+/// Returns the warning that pixels are not finite, if there are any.
+fn not_finite(image: &Image) -> Option<String> {
+    let pixels = image.pixels().iter().enumerate();
+    let mut wrong = pixels.filter(|(_, pixel)| !pixel.iter().all(|channel| channel.is_finite()));
+    let (first, _) = wrong.next()?;
+    let (x, y) = image.position(first);
+    Some(format!(
+        "{} of {} pixels are infinite or NaN, the first at ({x}, {y}): use less power of the \
+         lights and smaller factors of the materials",
+        wrong.count() + 1,
+        image.pixels().len(),
+    ))
 }
 
 /// Returns the parts of the tracer that the scene uses. Each line has a newline at its end.
