@@ -137,18 +137,9 @@ impl Image {
     /// gives 0.
     #[must_use]
     pub fn to_rgb8(&self) -> Vec<u8> {
-        rgb8(&self.pixels)
-    }
-
-    /// Returns the pixels of row `y` as [`Image::to_rgb8`] does.
-    ///
-    /// # Panics
-    ///
-    /// If there is no such row.
-    #[must_use]
-    pub fn row_to_rgb8(&self, y: u32) -> Vec<u8> {
-        let (y, width) = (y as usize, self.width as usize);
-        rgb8(&self.pixels[y * width..(y + 1) * width])
+        let byte =
+            |channel: &f32| (255.0 * f64::from(*channel).clamp(0.0, 1.0) + 0.5).floor() as u8;
+        self.pixels.as_flattened().iter().map(byte).collect()
     }
 
     /// Overwrites every pixel with `color`.
@@ -194,11 +185,6 @@ impl Image {
         }
         Digest(hash.finalize().into())
     }
-}
-
-fn rgb8(pixels: &[Rgb]) -> Vec<u8> {
-    let byte = |channel: &f32| (255.0 * f64::from(*channel).clamp(0.0, 1.0) + 0.5).floor() as u8;
-    pixels.as_flattened().iter().map(byte).collect()
 }
 
 impl PartialEq for Image {

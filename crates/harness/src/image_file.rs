@@ -1,5 +1,4 @@
-//! The formats of image files. Each is written row by row, so that an image of any size takes only
-//! the memory that [`ImageFormat::memory`] says.
+//! The formats of image files. Writing one takes no more memory than [`ImageFormat::memory`] says.
 
 use exr::block::writer::ChunksWriter;
 use exr::block::{UncompressedBlock, enumerate_ordered_header_block_indices};
@@ -8,6 +7,9 @@ use exr::error::UnitResult;
 use exr::meta::BlockDescription;
 use exr::meta::attribute::{ChannelDescription, LineOrder, SampleType};
 use exr::meta::header::Header;
+use image::codecs::png::PngEncoder;
+use image::codecs::pnm::{PnmEncoder, PnmSubtype, SampleEncoding};
+use image::{ExtendedColorType, ImageEncoder, ImageError, ImageResult};
 use rayweave_contract::Image;
 use rayweave_scene_file::path_text;
 use std::io::{self, Cursor, Seek, Write};
@@ -40,12 +42,17 @@ impl ImageFormat {
         }
     }
 
-    /// Returns an upper bound of the memory that writing an image of this width takes, in bytes.
-    pub fn memory(self, width: u32) -> usize {
-        // Bytes a pixel, and rows: of a block of EXR there are a few copies.
-        let (bytes, rows) = if self == Self::Exr { (12, 16 * 6) } else { (3, 6) };
+    /// Returns an upper bound of the memory that writing an image of this size takes, in bytes.
+    pub fn memory(self, width: u32, height: u32) -> usize {
+        let bytes = match self {
+            // The bytes of the file, once as they are and once compressed.
+            Self::Png => width as usize * height as usize * 3 * 2,
+            Self::Ppm => width as usize * height as usize * 3,
+            // A few copies of a block of 16 rows.
+            Self::Exr => width as usize * 12 * 16 * 6,
+        };
         // The rest is for buffers of a fixed size.
-        width as usize * bytes * rows + (4 << 20)
+        bytes + (4 << 20)
     }
 
     /// Returns the contents of a file with this image.
@@ -59,8 +66,8 @@ impl ImageFormat {
     /// Writes the contents of a file with this image. `file` should have a buffer.
     pub fn write(self, image: &Image, file: &mut (impl Write + Seek)) -> io::Result<()> {
         match self {
-            Self::Png => write_png(image, file).map_err(io::Error::from),
-            Self::Ppm => write_ppm(image, file),
+            Self::Png => write_png(image, file).map_err(io_error),
+            Self::Ppm => write_ppm(image, file).map_err(io_error),
             Self::Exr => write_exr(image, file).map_err(|error| match error {
                 exr::error::Error::Io(error) => error,
                 error => io::Error::other(error),
@@ -69,25 +76,42 @@ impl ImageFormat {
     }
 }
 
-/// Writes a PNG with the chunk that says that a viewer should show the bytes as sRGB.
-fn write_png(image: &Image, file: &mut impl Write) -> Result<(), png::EncodingError> {
-    let mut encoder = png::Encoder::new(file, image.width(), image.height());
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_source_srgb(png::SrgbRenderingIntent::RelativeColorimetric);
-    encoder.set_compression(png::Compression::Fast);
-    let mut writer = encoder.write_header()?;
-    let mut rows = writer.stream_writer()?;
-    for y in 0..image.height() {
-        rows.write_all(&image.row_to_rgb8(y))?;
+fn io_error(error: ImageError) -> io::Error {
+    match error {
+        ImageError::IoError(error) => error,
+        error => io::Error::other(error),
     }
-    rows.finish()?;
-    writer.finish()
 }
 
-fn write_ppm(image: &Image, file: &mut impl Write) -> io::Result<()> {
-    write!(file, "P6\n{} {} 255\n", image.width(), image.height())?;
-    (0..image.height()).try_for_each(|y| file.write_all(&image.row_to_rgb8(y)))
+/// The length of a PNG's signature and header, which come first.
+const PNG_HEADER: usize = 33;
+
+/// The chunk that says that a viewer should show the bytes as sRGB (perceptual), with its checksum:
+/// PNG specification (third edition, 2025), 11.3.2.5.
+const SRGB_CHUNK: &[u8] = b"\0\0\0\x01sRGB\0\xae\xce\x1c\xe9";
+
+/// Writes a PNG with an `sRGB` chunk, which the encoder does not write.
+fn write_png(image: &Image, file: &mut impl Write) -> ImageResult<()> {
+    let mut png = Vec::new();
+    let (width, height) = (image.width(), image.height());
+    PngEncoder::new(&mut png).write_image(
+        &image.to_rgb8(),
+        width,
+        height,
+        ExtendedColorType::Rgb8,
+    )?;
+    let (header, rest) = png.split_at(PNG_HEADER);
+    [header, SRGB_CHUNK, rest].into_iter().try_for_each(|part| Ok(file.write_all(part)?))
+}
+
+fn write_ppm(image: &Image, file: &mut impl Write) -> ImageResult<()> {
+    let (width, height) = (image.width(), image.height());
+    PnmEncoder::new(file).with_subtype(PnmSubtype::Pixmap(SampleEncoding::Binary)).write_image(
+        &image.to_rgb8(),
+        width,
+        height,
+        ExtendedColorType::Rgb8,
+    )
 }
 
 /// Writes an EXR of scan lines from the top, which every reader knows. Some readers refuse tiles,
@@ -121,5 +145,6 @@ fn write_exr(image: &Image, file: &mut (impl Write + Seek)) -> UnitResult {
         Ok(())
     })
 }
+
 #[cfg(test)]
 mod tests;

@@ -53,7 +53,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let computing = strategy.threads.computing_threads(threads);
     let mut image = input.image()?;
     // Reserved until the image is written: memory runs out before the work or not at all.
-    let reserved = reserve(format.memory(input.width)).ok_or_else(|| {
+    let reserved = reserve(format.memory(input.width, input.height)).ok_or_else(|| {
         let (width, height) = (input.width, input.height);
         format!("no memory to write an image of {width} x {height} pixels: choose a smaller size")
     })?;
