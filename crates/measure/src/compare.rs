@@ -241,7 +241,12 @@ impl Protocol {
         let rounds = interrupted_after.unwrap_or(rounds.completed());
         tables.iter_mut().for_each(|rows| compute_figures(rows));
         let interrupted = interrupted_after.is_some();
-        let comparison = |rows| Comparison { rows, digest, rounds, interrupted };
+        let comparison = |rows: Vec<Measurement>| {
+            // The round in which the reference failed is incomplete.
+            let failed = rows.first().filter(|reference| reference.error.is_some());
+            let rounds = failed.map_or(rounds, |reference| reference.samples_ns.len());
+            Comparison { rows, digest, rounds, interrupted }
+        };
         Ok(tables.into_iter().map(comparison).collect())
     }
 

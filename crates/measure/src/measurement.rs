@@ -2,7 +2,7 @@
 //! a list of measurements.
 
 use crate::digest_text;
-use crate::statistics::{Interval, efficiency, karp_flatt, median, ratio_interval};
+use crate::statistics::{Interval, LEAST_VALUES, efficiency, karp_flatt, median, ratio_interval};
 use rayweave_contract::{Digest, Policy, Strategy, Threads};
 use serde::{Deserialize, Serialize};
 use std::num::NonZeroUsize;
@@ -222,9 +222,17 @@ impl Measurement {
 
 /// Computes the figures of all `rows`, the first of which is the reference.
 pub(crate) fn compute_figures(rows: &mut [Measurement]) {
-    let Some(reference) = rows.first().filter(|reference| reference.passed()).cloned() else {
+    let Some(reference) = rows.first().filter(|reference| reference.identical).cloned() else {
         return;
     };
+    // If the reference's process was killed after many rounds, these still count.
+    let complete = reference.samples_ns.len();
+    if reference.error.is_some() {
+        if complete < LEAST_VALUES {
+            return;
+        }
+        rows.iter_mut().for_each(|row| row.truncate(complete));
+    }
     for row in rows.iter_mut().filter(|row| row.passed()) {
         row.compute_figures(&reference);
     }

@@ -230,6 +230,21 @@ fn without_a_right_reference_there_are_no_figures() {
     }
 }
 
+/// Catches many complete rounds that are lost with one process of the reference.
+#[test]
+fn rounds_before_a_failure_of_the_reference_count() {
+    // Its image, its warm-up and its control's, then two samples a round: the tenth round fails.
+    let failing = |name: &str, call: usize| {
+        if name == "reference" && call >= 3 + 2 * 9 { Err("killed".to_owned()) } else { right(10) }
+    };
+    let comparison = run(protocol(20, 20, 0), &mut fake(failing));
+    let [reference, .., queue] = &comparison.rows[..] else { panic!("rows") };
+    assert_eq!(reference.error.as_deref(), Some("killed"));
+    assert!((reference.speedup, comparison.passed()) == (None, false));
+    assert_eq!((comparison.rounds, queue.samples_ns.len()), (9, 9));
+    assert_eq!(queue.speedup.map(|speedup| speedup.median), Some(1.0));
+}
+
 #[test]
 fn a_failing_reference_is_an_error() {
     let mut executor = fake(|_, _| Err("broken".to_owned()));
