@@ -28,6 +28,8 @@ const LEAST_PATIENCE: Duration = Duration::from_secs(60);
 /// A request for one rendering: the argument of `sample`, as JSON.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Job {
+    /// The process that waits for the answer.
+    pub parent: u32,
     /// The scene file with any name that the system allows; `None` is the lab report's scene.
     pub scene: Option<OsString>,
     /// The options of the scene.

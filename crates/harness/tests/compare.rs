@@ -7,15 +7,29 @@ use serde_json::Value;
 use std::fs;
 use std::path::Path;
 
-/// Returns the answer of `sample` to a job for `scene`, which is JSON.
-fn answer(folder: &Path, scene: &str, count_rays: bool) -> Value {
+/// Runs `sample` with a job of `parent` for `scene`, which is JSON.
+fn sample(folder: &Path, parent: u32, scene: &str, count_rays: bool) -> program::Run {
     let image = r#""size":[9,7],"antialiasing":1,"sampling":"Importance","precision":"F64""#;
     let execution = r#""formulas":"Textbook","lanes":"One","share_samples":"Off","adaptive":"Off""#;
     let accel = r#""accel":"None""#;
-    let job = format!(r#"{{"scene":{scene},"options":{{{image},{execution},{accel}}},"tile":4,"#)
-        + &format!(r#""strategy":"tile-queue","threads":2,"count_rays":{count_rays}}}"#);
-    let answer = rayweave(folder, &format!("sample {job}")).expect_success();
+    let job = format!(
+        r#"{{"parent":{parent},"scene":{scene},"options":{{{image},{execution},{accel}}},"tile":4,"#
+    ) + &format!(r#""strategy":"tile-queue","threads":2,"count_rays":{count_rays}}}"#);
+    rayweave(folder, &format!("sample {job}"))
+}
+
+/// Returns the answer of `sample` to a job of this process.
+fn answer(folder: &Path, scene: &str, count_rays: bool) -> Value {
+    let answer = sample(folder, std::process::id(), scene, count_rays).expect_success();
     serde_json::from_str(&answer).expect("a line of JSON")
+}
+
+/// Catches a sample that goes on although nobody waits for it any more.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_sample_without_its_parent_ends() {
+    let message = sample(folder().path(), 1, "null", false).expect_refusal();
+    assert_eq!(message, "error: the process that asked for this sample has ended\n");
 }
 
 /// Catches an option that does not reach the process of a sample.

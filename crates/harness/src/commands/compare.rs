@@ -24,6 +24,7 @@ use std::fs;
 use std::io;
 use std::num::{NonZeroU32, NonZeroUsize};
 use std::path::{Path, PathBuf};
+use std::process;
 use std::time::Duration;
 
 #[derive(Args)]
@@ -312,6 +313,7 @@ fn measure(
     let executors = options.ways().iter().map(|&way| {
         let share_samples = Some(if way { SharingOption::On } else { SharingOption::Off });
         let job = Job {
+            parent: process::id(),
             scene: path.as_ref().map(Into::into),
             options: SceneOptions { share_samples, ..options.of_scene(path.as_deref()) },
             tile: *tile,

@@ -25,7 +25,7 @@ fn parse_job(text: &str) -> Result<Job, String> {
 }
 
 pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
-    end_with_parent();
+    end_with_parent(arguments.job.parent)?;
     // The parent reads nothing but the answer, so a failure is an answer too.
     let answer = measure(&arguments.job);
     print(&format!("{}\n", serde_json::to_string(&answer).map_err(|e| e.to_string())?))?;
@@ -51,9 +51,17 @@ fn measure(job: &Job) -> Answer {
 }
 
 /// Makes the end of the parent end this process too, so that it does not disturb a later
-/// measurement.
-fn end_with_parent() {
+/// measurement. Returns an error if the parent has ended already.
+fn end_with_parent(parent: u32) -> Result<(), String> {
     #[cfg(target_os = "linux")]
-    // If the system refuses, the process ends by itself after rendering.
-    let _ = nix::sys::prctl::set_pdeathsig(nix::sys::signal::Signal::SIGKILL);
+    {
+        // If the system refuses, the process ends by itself after rendering.
+        let _ = nix::sys::prctl::set_pdeathsig(nix::sys::signal::Signal::SIGKILL);
+        if std::os::unix::process::parent_id() != parent {
+            return Err("the process that asked for this sample has ended".to_owned());
+        }
+    }
+    #[cfg(not(target_os = "linux"))]
+    let _ = parent;
+    Ok(())
 }
