@@ -31,10 +31,15 @@ impl Default for Protocol {
 }
 
 impl Protocol {
-    /// Returns this protocol, or one with as many rounds as fit into `limit` if there is one.
+    /// The largest number of rounds of a protocol with a time limit. More rounds would narrow an
+    /// interval by nothing to speak of, and the bootstrap of half a million takes minutes.
+    pub const MOST_ROUNDS: usize = 2000;
+
+    /// Returns this protocol, or one with as many rounds as fit into `limit` if there is one, up to
+    /// [`Protocol::MOST_ROUNDS`].
     #[must_use]
     pub fn within(self, limit: Option<Duration>) -> Self {
-        limit.map_or(self, |budget| Self { max_rounds: usize::MAX, budget, ..self })
+        limit.map_or(self, |budget| Self { max_rounds: Self::MOST_ROUNDS, budget, ..self })
     }
 
     /// Returns the slots of `entries` entries: one warm-up round in the order of the entries, then

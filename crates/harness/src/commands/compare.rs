@@ -406,7 +406,7 @@ fn protocol(options: &Options, ways: usize, scenes: usize) -> Protocol {
     // A time limit or a precision goal replaces the limit on rounds.
     let asked = options.time_limit.is_some() || options.precision_goal.is_some();
     Protocol {
-        max_rounds: if asked { usize::MAX } else { default.max_rounds },
+        max_rounds: if asked { Protocol::MOST_ROUNDS } else { default.max_rounds },
         // Each way gets as much time as it would get alone.
         budget: options.time_limit.unwrap_or(default.budget * ways as u32) / scenes as u32,
         goal: options.precision_goal,
