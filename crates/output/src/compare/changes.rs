@@ -2,8 +2,8 @@
 
 use super::{Record, Results, Subject, control, scene_file, scene_name};
 use crate::{json, style};
-use rayweave_measure::statistics::{median_ratio_interval, ratios};
-use rayweave_measure::{Interval, Measurement};
+use rayweave_measure::statistics::{LEAST_VALUES, median_ratio_interval, ratios};
+use rayweave_measure::{Interval, Machine, Measurement};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -23,7 +23,7 @@ pub struct Change {
     /// The same for the time over the reference's time in the same run, so that a change of the
     /// whole machine cancels out.
     pub relative_time: Option<Interval>,
-    /// "slower", "faster", "as before" or "not in both".
+    /// "slower", "faster", "as before", "too few samples" or "not in both".
     pub verdict: String,
 }
 
@@ -115,14 +115,20 @@ fn changes(then: &[Record], now: &[Record]) -> Vec<Change> {
         };
         let earlier = then.iter().find(|record| alike(&record.measurement)).map(times);
         let (now, then) = (times(record), earlier.unwrap_or_default());
-        // Times of 0 have no ratio.
-        let finite = |ratio: &Interval| ratio.low.is_finite() && ratio.high.is_finite();
-        let time = median_ratio_interval(&floats(&now), &floats(&then)).filter(finite);
+        let samples = now.len().min(then.len());
+        // Few samples have no interval, and times of 0 no ratio.
+        let sound = |ratio: &Interval| {
+            samples >= LEAST_VALUES && ratio.low.is_finite() && ratio.high.is_finite()
+        };
+        let time = median_ratio_interval(&floats(&now), &floats(&then)).filter(sound);
         let relative_time =
             median_ratio_interval(&ratios(&now, &reference_now), &ratios(&then, &reference_then))
-                .filter(finite);
+                .filter(sound);
         // The reference's relative time is always 1, so its own time decides.
-        let verdict = verdict(if place == 0 { time } else { relative_time });
+        let verdict = match verdict(if place == 0 { time } else { relative_time }) {
+            "not in both" if (1..LEAST_VALUES).contains(&samples) => "too few samples",
+            verdict => verdict,
+        };
         Change {
             scene: record.subject.scene.clone(),
             share_samples: record.subject.share_samples,
@@ -160,6 +166,13 @@ fn doubts(now: &Results, then: &Results) -> Vec<String> {
             "The baseline {doubt}: do not trust the verdicts, measure a new baseline."
         ));
     }
+    let elsewhere = other_machine(&now.machine, &then.machine);
+    if !elsewhere.is_empty() {
+        lines.push(format!(
+            "The baseline is of another machine or build: the verdicts compare these too.\n{}",
+            elsewhere.join("\n")
+        ));
+    }
     let differs = |group: &[Record]| {
         let then = then.same_group(group).first();
         then.is_some_and(|then| then.reference_digest != group[0].reference_digest)
@@ -169,6 +182,18 @@ fn doubts(now: &Results, then: &Results) -> Vec<String> {
         format!("The baseline is of ANOTHER IMAGE of {scene}, which may explain the difference.")
     }));
     lines
+}
+
+/// Returns the properties of machine and build that differ, but for the commit: comparing two
+/// commits is what baselines are for.
+fn other_machine(now: &Machine, then: &Machine) -> Vec<String> {
+    let (now, then) = (json::value(now), json::value(then));
+    let facts = now.as_object().into_iter().flatten();
+    let differs = |(key, here): &(&String, &Value)| *key != "commit" && then[*key] != **here;
+    facts
+        .filter(differs)
+        .map(|(key, here)| format!("{key} was {} and is {here} now", then[key]))
+        .collect()
 }
 
 /// Returns the reason to doubt the times of a run, if there is one.
@@ -209,8 +234,8 @@ pub(super) fn text(results: &Results, shown: fn(Interval) -> String) -> Option<S
         lines.push(style::table(HEADER, group.iter().map(|change| cells(change, shown)), 1..=3));
     }
     lines.push(
-        "\nTwo runs also differ by drift. The verdict therefore uses the time relative to the \
-         reference\nof the same run; for the reference itself it uses the time.\n\
+        "\nTwo runs also differ by drift, so the verdict uses the time relative to the\n\
+         reference of the same run; for the reference itself it uses the time.\n\
          Expect one false alarm in twenty rows."
             .to_owned(),
     );
@@ -314,6 +339,22 @@ mod tests {
             let now = format!("This run {why}: {advice} again.");
             assert_eq!(told(&good(), bad()), [now]);
         }
+    }
+
+    /// Catches verdicts without a word on what else differs, or on single samples.
+    #[test]
+    fn another_machine_and_few_samples_are_said() {
+        let mut then = slowed(1.0, 1.0);
+        then.machine.cpu = "Another CPU".to_owned();
+        then.machine.commit = "0000000".to_owned();
+        then.results[2].measurement.samples_ns.truncate(5);
+        let now = slowed(1.0, 1.0).compared_with(&then);
+        let machine =
+            "The baseline is of another machine or build: the verdicts compare these too.";
+        let cpu = &now.machine.cpu;
+        let expected = format!("{machine}\ncpu was \"Another CPU\" and is \"{cpu}\" now");
+        assert_eq!(now.doubts, [expected]);
+        assert_eq!(now.changes.expect("changes")[1].verdict, "too few samples");
     }
 
     /// Catches a scene compared with another one of the same file name.
