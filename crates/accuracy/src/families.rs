@@ -6,7 +6,7 @@
 //! because random numbers come from integers and all operations round as IEEE 754 specifies.
 
 mod cylinder;
-mod draw;
+pub(crate) mod draw;
 mod mesh;
 mod mixed;
 mod plane;

@@ -10,6 +10,7 @@
 //! * [`cases`] and [`outcomes`]: the cases and the answers of a kernel, in files of [`json_lines`];
 //! * [`oracle`]: computes the exact answer to a case by rational arithmetic;
 //! * [`families`]: seeded generators of 36 families of hard cases, with their answers;
+//! * [`shadows`]: whether a surface hides a light that lies in it or close to it;
 //! * [`kernel`]: runs the tracer's own kernel on a case;
 //! * [`mod@score`]: verdicts, errors in ulps and leaks per family, and their [`thresholds`];
 //! * [`guarantees`]: the properties that hold for any ray and primitive, for fuzzing.
@@ -39,6 +40,7 @@ mod number;
 pub mod oracle;
 pub mod outcomes;
 pub mod score;
+pub mod shadows;
 pub mod thresholds;
 pub mod tradeoff;
 

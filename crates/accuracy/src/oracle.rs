@@ -25,6 +25,7 @@ mod exact;
 mod margin;
 mod plane;
 mod quadric;
+pub mod shadow;
 mod sphere;
 mod triangle;
 

@@ -22,9 +22,9 @@ pub(crate) struct Material<S> {
 #[derive(Clone, Debug)]
 pub(crate) struct Light<S> {
     pub(crate) position: Vector<S>,
-    /// The sum of the magnitudes of the position's coordinates: rounding errors near the light are
-    /// proportional to it.
-    pub(crate) reach: S,
+    /// The rounding error of each coordinate of the position, as part of the error of its height
+    /// above a surface.
+    pub(crate) uncertain: Vector<S>,
     /// The colour times the power.
     pub(crate) intensity: Vector<S>,
     /// The primitives that may hide the light.
@@ -45,11 +45,12 @@ impl<S: Scalar> Material<S> {
 }
 
 impl<S: Scalar> Light<S> {
-    pub(crate) fn new(light: &scene::Light, occluders: Occluders<S>) -> Self {
+    /// Makes a light whose position is known up to this many roundings.
+    pub(crate) fn new(light: &scene::Light, roundings: f64, occluders: Occluders<S>) -> Self {
         let position = Vector::rounded(light.position);
         Self {
             position,
-            reach: position.sum_of_magnitudes(),
+            uncertain: position.abs() * S::from_f64(roundings * S::ROUNDOFF),
             intensity: Vector::rounded(light.color * light.power),
             occluders,
         }

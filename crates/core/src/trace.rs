@@ -14,7 +14,8 @@ use crate::formulas::{Family, LightPath};
 use crate::material::{Finish, Light, Material, power};
 use crate::ray::Ray;
 use crate::scene::{Plane, Scene};
-use crate::shapes::SurfacePoint;
+use crate::shapes::side::Side;
+use crate::shapes::{ROUNDINGS, SurfacePoint};
 use crate::simd::lane::{Lane, Mask, Scalar};
 use crate::simd::vector::Vector;
 use glam::DVec3;
@@ -75,8 +76,14 @@ impl<S: Scalar, F: Family> World<S, F> {
         let mirrors = scene.materials.iter().any(|material| material.reflection > 0.0);
         let shining = scene.lights.iter().filter(|light| light.color * light.power != DVec3::ZERO);
         let lights = shining.filter_map(|light| {
-            let planes = hiding_planes(scene, light.position, culling_eye, S::ROUNDOFF)?;
-            Some(Light::new(light, Occluders { planes, cones: cones_from(light.position) }))
+            let at = light.position;
+            let mut planes = hiding_planes(scene, at, culling_eye, S::ROUNDOFF)?;
+            if F::ERROR_BOUNDED {
+                planes.retain(|&(_, side)| side != Side::Unknown);
+            }
+            let roundings = if F::ERROR_BOUNDED { ROUNDINGS } else { 0.0 };
+            let occluders = Occluders::new(scene, at, planes, cones_from(at));
+            Some(Light::new(light, roundings, occluders))
         });
         let mirrored_eye = |plane: &Plane| {
             let mirror = scene.materials[plane.material].reflection > 0.0;
@@ -199,34 +206,26 @@ impl<S: Scalar, F: Family> World<S, F> {
         let (zero, two) = (L::literal(0.0), L::literal(2.0));
         let Surface { at, finish } = surface;
         let start = at.start();
-        let start_reach = start.sum_of_magnitudes();
+        let steepness = at.normal.abs();
         let facing = at.normal.dot(ray.direction);
         let mut color = finish.color * finish.ambient;
         // Lights are numbered from 2, because 1 stands for a hit in a path hash.
         for (number, light) in (2..).zip(&self.lights) {
             // The direction to the light starts where shadow rays start, which is certainly on the
-            // viewer's side. A light in the surface itself is then below it, and no rounding makes
-            // it shine.
+            // viewer's side. A light in the surface itself is then below it by all roundings but
+            // those of the light's own coordinates, and no rounding makes it shine.
             let toward = Vector::splat(light.position) - start;
             let distance = toward.dot(toward).sqrt();
             let inverse_distance = L::literal(1.0) / distance;
             let to_light = toward * inverse_distance;
             let cosine = at.normal.dot(to_light);
-            let above = active & zero.lt(cosine);
+            let uncertain = steepness.dot(Vector::splat(light.uncertain)) * inverse_distance;
+            let above = active & uncertain.lt(cosine);
             if !above.any() {
                 continue;
             }
-            let reach = start_reach + L::splat(light.reach);
-            let path = LightPath { start, toward, to_light, distance, inverse_distance, reach };
-            let (shadow_ray, limit) = F::shadow_ray(&path);
-            let lit = above
-                & !self.primitives.occluded::<L, F>(
-                    &shadow_ray,
-                    limit,
-                    above,
-                    &path,
-                    &light.occluders,
-                );
+            let path = LightPath { start, toward, to_light, distance };
+            let lit = above & !self.primitives.occluded::<L, F>(above, &path, &light.occluders);
             if !lit.any() {
                 continue;
             }

@@ -5,13 +5,13 @@ use glam::{DVec2, DVec3};
 use rayweave_measure::random::SplitMix64;
 
 /// A stream of random numbers, with the distributions that the families need.
-pub(super) struct Draw {
+pub(crate) struct Draw {
     random: SplitMix64,
 }
 
 impl Draw {
     /// Creates the stream of one case; the FNV-1a hash of the family's name is part of the seed.
-    pub(super) fn new(seed: u64, family: &str, index: usize) -> Self {
+    pub(crate) fn new(seed: u64, family: &str, index: usize) -> Self {
         let name = family.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
             (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
         });
@@ -23,55 +23,55 @@ impl Draw {
     }
 
     /// Returns a number in `low..high`, uniformly distributed.
-    pub(super) fn range(&mut self, low: f64, high: f64) -> f64 {
+    pub(crate) fn range(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.random.fraction()
     }
 
     /// Returns a number in `low..high`, both above 0, with a uniformly distributed logarithm.
-    pub(super) fn magnitude(&mut self, low: f64, high: f64) -> f64 {
+    pub(crate) fn magnitude(&mut self, low: f64, high: f64) -> f64 {
         libm::exp2(self.range(libm::log2(low), libm::log2(high)))
     }
 
     /// Returns such a number with either sign.
-    pub(super) fn signed_magnitude(&mut self, low: f64, high: f64) -> f64 {
+    pub(crate) fn signed_magnitude(&mut self, low: f64, high: f64) -> f64 {
         self.sign() * self.magnitude(low, high)
     }
 
     /// Returns an integer in `low..=high`.
-    pub(super) fn integer(&mut self, low: i32, high: i32) -> i32 {
+    pub(crate) fn integer(&mut self, low: i32, high: i32) -> i32 {
         self.range(f64::from(low), f64::from(high) + 1.0).floor() as i32
     }
 
     /// Returns true in `share` of all cases.
-    pub(super) fn chance(&mut self, share: f64) -> bool {
+    pub(crate) fn chance(&mut self, share: f64) -> bool {
         self.range(0.0, 1.0) < share
     }
 
     /// Returns 1 or -1.
-    pub(super) fn sign(&mut self) -> f64 {
+    pub(crate) fn sign(&mut self) -> f64 {
         if self.chance(0.5) { 1.0 } else { -1.0 }
     }
 
     /// Returns a point in the cube of `-half..half`.
-    pub(super) fn within(&mut self, half: f64) -> DVec3 {
+    pub(crate) fn within(&mut self, half: f64) -> DVec3 {
         let mut coordinate = || self.range(-half, half);
         DVec3::new(coordinate(), coordinate(), coordinate())
     }
 
     /// Returns a vector whose coordinates are multiples of `step`, up to `steps` of them.
-    pub(super) fn lattice(&mut self, steps: i32, step: f64) -> DVec3 {
+    pub(crate) fn lattice(&mut self, steps: i32, step: f64) -> DVec3 {
         let mut coordinate = || f64::from(self.integer(-steps, steps)) * step;
         DVec3::new(coordinate(), coordinate(), coordinate())
     }
 
     /// Returns 0 in half of the cases, where f32 subtracts the centre exactly, else a point in the
     /// cube.
-    pub(super) fn center(&mut self, half: f64) -> DVec3 {
+    pub(crate) fn center(&mut self, half: f64) -> DVec3 {
         if self.chance(0.5) { DVec3::ZERO } else { self.within(half) }
     }
 
     /// Returns a unit vector, uniformly distributed over the sphere.
-    pub(super) fn unit(&mut self) -> DVec3 {
+    pub(crate) fn unit(&mut self) -> DVec3 {
         loop {
             let vector = self.within(1.0);
             if (0.01..1.0).contains(&vector.length_squared()) {
@@ -81,13 +81,13 @@ impl Draw {
     }
 
     /// Returns a unit vector in the plane, uniformly distributed over the circle.
-    pub(super) fn circle(&mut self) -> DVec2 {
+    pub(crate) fn circle(&mut self) -> DVec2 {
         let angle = self.range(0.0, std::f64::consts::TAU);
         DVec2::new(libm::cos(angle), libm::sin(angle))
     }
 
     /// Returns a unit vector perpendicular to `axis`.
-    pub(super) fn across(&mut self, axis: DVec3) -> DVec3 {
+    pub(crate) fn across(&mut self, axis: DVec3) -> DVec3 {
         loop {
             let across = self.unit().cross(axis);
             if across.length_squared() > 0.01 * axis.length_squared() {
@@ -97,7 +97,7 @@ impl Draw {
     }
 
     /// Returns a point in the cube of `-5..5`, at a distance of 1 or more from `target`.
-    pub(super) fn away_from(&mut self, target: DVec3) -> DVec3 {
+    pub(crate) fn away_from(&mut self, target: DVec3) -> DVec3 {
         loop {
             let point = self.within(5.0);
             if point.distance_squared(target) >= 1.0 {
@@ -108,7 +108,7 @@ impl Draw {
 
     /// Returns a direction that crosses a surface with the normal `outward`, inward for an even
     /// index and outward for an odd one, and the name of that side.
-    pub(super) fn through_surface(
+    pub(crate) fn through_surface(
         &mut self,
         outward: DVec3,
         index: usize,
@@ -122,24 +122,24 @@ impl Draw {
 
     /// Returns the ray from `origin`, rounded to f32, towards `target`. In half of the cases it
     /// reaches the target at `t` = 1, else its direction has unit length.
-    pub(super) fn ray_to(&mut self, origin: DVec3, target: DVec3) -> Ray {
+    pub(crate) fn ray_to(&mut self, origin: DVec3, target: DVec3) -> Ray {
         let direction = target - rounded(origin);
         if self.chance(0.5) { ray(origin, direction) } else { ray(origin, direction.normalize()) }
     }
 }
 
 /// Returns the ray, rounded to f32.
-pub(super) fn ray(origin: DVec3, direction: DVec3) -> Ray {
+pub(crate) fn ray(origin: DVec3, direction: DVec3) -> Ray {
     Ray { origin: single(origin), direction: single(direction) }
 }
 
 /// Returns the coordinates, rounded to f32.
-pub(super) fn single(vector: DVec3) -> [f32; 3] {
+pub(crate) fn single(vector: DVec3) -> [f32; 3] {
     vector.as_vec3().to_array()
 }
 
 /// Returns the vector with its coordinates rounded to f32.
-pub(super) fn rounded(vector: DVec3) -> DVec3 {
+pub(crate) fn rounded(vector: DVec3) -> DVec3 {
     vector.as_vec3().as_dvec3()
 }
 

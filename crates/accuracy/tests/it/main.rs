@@ -6,6 +6,7 @@ mod json_format;
 mod kernel;
 mod kernel_guarantees;
 mod oracle;
+mod shadows;
 
 /// Returns the items as a file of JSON lines.
 fn written<T: serde::Serialize>(items: &[T]) -> String {

@@ -6,5 +6,6 @@ pub(crate) mod bvh;
 pub(crate) mod cones;
 pub(crate) mod hit;
 pub(crate) mod occluders;
+mod occlusion;
 pub(crate) mod plane_culling;
 pub(crate) mod primitives;

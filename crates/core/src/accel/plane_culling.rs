@@ -8,49 +8,32 @@
 //! touches, and would then be in the plane's shadow. So this is part of the meaning of the robust
 //! formulas, with and without acceleration, and not only an optimisation.
 
-use crate::scene::{Plane, Scene, unit};
+use crate::scene::Scene;
 use crate::shapes::MARGIN;
+use crate::shapes::side::Side;
 use glam::DVec3;
 
-/// The side of a plane that a point is on.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Side {
-    Front,
-    Back,
-    /// Too near to the plane to tell, given rounding.
-    Unknown,
-}
-
-/// Returns the numbers of the planes that may hide a light from what rays from `eye` reach, or
-/// `None` if the light lights nothing of it. Without an `eye`, rays may start anywhere.
+/// Returns the numbers of the planes that may hide a light from what rays from `eye` reach, and the
+/// light's sides of them as they are written, or `None` if the light lights nothing of it. Without
+/// an `eye`, rays may start anywhere.
 pub(crate) fn hiding_planes(
     scene: &Scene,
     light: DVec3,
     eye: Option<DVec3>,
     roundoff: f64,
-) -> Option<Vec<u32>> {
+) -> Option<Vec<(u32, Side)>> {
     let mut hiding = Vec::new();
+    // A point is farther from a plane of its known side than any error of a hit.
+    let side = |plane, point| Side::of_plane(plane, point, MARGIN * roundoff);
     for (number, plane) in (0..).zip(&scene.planes) {
-        let eye_side = eye.map_or(Side::Unknown, |eye| side(plane, eye, roundoff));
-        match (eye_side, side(plane, light, roundoff)) {
-            (Side::Unknown, _) | (_, Side::Unknown) => hiding.push(number),
+        let eye_side = eye.map_or(Side::Unknown, |eye| side(plane, eye));
+        match (eye_side, side(plane, light)) {
+            (Side::Unknown, _) | (_, Side::Unknown) => {
+                hiding.push((number, Side::as_written(plane, light)));
+            }
             (eye, light) if eye != light => return None,
             _ => {}
         }
     }
     Some(hiding)
-}
-
-/// Returns the side of a point that is farther from the plane than any error of a hit.
-fn side(plane: &Plane, point: DVec3, roundoff: f64) -> Side {
-    let normal = unit(plane.normal);
-    let height = normal.dot(point - plane.point);
-    let margin = MARGIN * roundoff * normal.abs().dot(point.abs() + plane.point.abs());
-    if height > margin {
-        Side::Front
-    } else if height < -margin {
-        Side::Back
-    } else {
-        Side::Unknown
-    }
 }

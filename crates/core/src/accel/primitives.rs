@@ -1,12 +1,11 @@
-//! All primitives of a scene, and the two questions that rays ask: the closest hit, and occlusion.
+//! All primitives of a scene, and their closest hit.
 
 use crate::accel::bounding_sphere::BoundingSphere;
 use crate::accel::bvh::Bvh;
 use crate::accel::cones::ConeSet;
 use crate::accel::hit::Hit;
-use crate::accel::occluders::Occluders;
 use crate::execution::Acceleration;
-use crate::formulas::{Family, LightPath, RayPrecomputations};
+use crate::formulas::{Family, RayPrecomputations};
 use crate::ray::{AxisOrder, Ray, miss};
 use crate::scene::Scene;
 use crate::shapes::SurfacePoint;
@@ -16,7 +15,7 @@ use crate::shapes::plane::Plane;
 use crate::shapes::shape_list::{Leaf, ShapeList};
 use crate::shapes::sphere::{self, Sphere};
 use crate::shapes::triangle::{self, Triangle};
-use crate::simd::lane::{Lane, Mask, Scalar};
+use crate::simd::lane::{Lane, Scalar};
 use crate::simd::vector::Vector;
 
 /// A BVH is built from this many bounded primitives on. At 63 mirrored spheres trying each is still
@@ -27,14 +26,14 @@ const BVH_MIN_PRIMITIVES: usize = 64;
 /// cylinders, each in file order. It decides between equal distances.
 #[derive(Debug)]
 pub(crate) struct Primitives<S> {
-    planes: Vec<Plane<S>>,
-    spheres: ShapeList<Sphere<S>>,
-    triangles: ShapeList<Triangle<S>>,
-    cylinders: ShapeList<Cylinder<S>>,
+    pub(super) planes: Vec<Plane<S>>,
+    pub(super) spheres: ShapeList<Sphere<S>>,
+    pub(super) triangles: ShapeList<Triangle<S>>,
+    pub(super) cylinders: ShapeList<Cylinder<S>>,
     /// All triangles, and all spheres and cylinders.
     triangles_and_others: [Leaf; 2],
     /// The hierarchy over the bounded primitives, if there are enough of them.
-    bvh: Option<Bvh<S>>,
+    pub(super) bvh: Option<Bvh<S>>,
     /// The bounding sphere of each triangle; empty unless all rays have unit direction and there is
     /// no BVH.
     triangle_bounds: Vec<BoundingSphere<S>>,
@@ -131,7 +130,7 @@ impl<S: Scalar> Primitives<S> {
     /// Computes the ray's part of the formulas for each kind that the scene has; for triangles,
     /// only if `order` names the ray's dominant axis.
     #[inline(always)]
-    fn precompute<L: Lane<Scalar = S>>(
+    pub(super) fn precompute<L: Lane<Scalar = S>>(
         &self,
         ray: &Ray<L>,
         order: Option<AxisOrder>,
@@ -205,7 +204,7 @@ impl<S: Scalar> Primitives<S> {
     /// Calls `leaf` with all bounded primitives: with the triangles once for each dominant axis, if
     /// the formulas need it.
     #[inline(always)]
-    fn by_axis<L: Lane<Scalar = S>, F: Family>(
+    pub(super) fn by_axis<L: Lane<Scalar = S>, F: Family>(
         &self,
         ray: &Ray<L>,
         wanted: L::Mask,
@@ -318,88 +317,6 @@ impl<S: Scalar> Primitives<S> {
             closest
                 .offer::<false>(number, F::cylinder(cylinder, ray, &precomputed.cylinder, wanted));
         }
-    }
-
-    /// Returns the lanes of `wanted` whose shadow ray hits something before `limit`. The ray goes
-    /// along `path` to the light of these `occluders`.
-    #[inline(always)]
-    pub(crate) fn occluded<L: Lane<Scalar = S>, F: Family>(
-        &self,
-        ray: &Ray<L>,
-        limit: L,
-        wanted: L::Mask,
-        path: &LightPath<L>,
-        occluders: &Occluders<S>,
-    ) -> L::Mask {
-        let mut clear = wanted;
-        for &plane in &occluders.planes {
-            clear = clear & !F::plane(&self.planes[plane as usize], ray).lt(limit);
-        }
-        if !clear.any() {
-            return wanted;
-        }
-        match (&self.bvh, &occluders.cones) {
-            (Some(bvh), _) if F::ERROR_BOUNDED => ray.by_direction_class(clear, |class, wanted| {
-                let precomputed = self.precompute(ray, Some(class.order));
-                bvh.traverse(ray, class, wanted, limit, |leaf, reached| {
-                    clear = clear
-                        & !(reached
-                            & !self.unoccluded_in_leaf::<L, F>(
-                                leaf,
-                                ray,
-                                &precomputed,
-                                limit,
-                                reached,
-                            ));
-                    (wanted & clear, limit)
-                });
-            }),
-            (_, Some(cones)) if F::ERROR_BOUNDED => {
-                cones.candidates((-path.to_light, path.distance), clear, |i, inside| {
-                    clear = clear & !self.bounded_primitive::<L, F>(i, ray, inside).lt(limit);
-                    clear
-                });
-            }
-            _ => self.by_axis::<L, F>(ray, clear, |leaf, precomputed, wanted| {
-                let reached = wanted & clear;
-                clear = clear
-                    & !(reached
-                        & !self.unoccluded_in_leaf::<L, F>(leaf, ray, precomputed, limit, reached));
-            }),
-        }
-        wanted & !clear
-    }
-
-    /// Returns the lanes of `wanted` that hit nothing of `leaf` before `limit`.
-    #[inline(never)]
-    fn unoccluded_in_leaf<L: Lane<Scalar = S>, F: Family>(
-        &self,
-        leaf: &Leaf,
-        ray: &Ray<L>,
-        precomputed: &RayPrecomputations<L>,
-        limit: L,
-        wanted: L::Mask,
-    ) -> L::Mask {
-        let mut clear = wanted;
-        for (_, sphere) in self.spheres.range(&leaf.spheres) {
-            clear = clear & !F::sphere(sphere, ray, &precomputed.sphere, clear).lt(limit);
-            if !clear.any() {
-                return clear;
-            }
-        }
-        for (_, triangle) in self.triangles.range(&leaf.triangles) {
-            clear = clear & !F::triangle(triangle, ray, &precomputed.triangle, clear).lt(limit);
-            if !clear.any() {
-                return clear;
-            }
-        }
-        for (_, cylinder) in self.cylinders.range(&leaf.cylinders) {
-            clear = clear & !F::cylinder(cylinder, ray, &precomputed.cylinder, clear).lt(limit);
-            if !clear.any() {
-                return clear;
-            }
-        }
-        clear
     }
 
     /// Returns the index of a primitive's material.

@@ -4,6 +4,7 @@ use crate::ray::Ray;
 use crate::shapes::SurfacePoint;
 use crate::shapes::cylinder::{self, Cylinder};
 use crate::shapes::plane::Plane;
+use crate::shapes::side::Side;
 use crate::shapes::sphere::{self, Sphere};
 use crate::shapes::triangle::{self, Triangle};
 use crate::simd::lane::Lane;
@@ -44,8 +45,43 @@ pub(crate) trait Family: Debug + Send + Sync + 'static {
     /// point of the surface.
     fn snap_to_surface<L: Lane>(near: Vector<L>, on_surface: SurfacePoint<L>) -> SurfacePoint<L>;
 
-    /// Returns the ray along a path to a light, and the `t` below which a surface hides the light.
+    /// Returns the ray along a path to a light, and the `t` of its end.
     fn shadow_ray<L: Lane>(path: &LightPath<L>) -> (Ray<L>, L);
+
+    /// Returns whether a plane hides the light at the end of a shadow ray, on this side of it.
+    fn plane_hides<L: Lane>(
+        plane: &Plane<L::Scalar>,
+        ray: &Ray<L>,
+        limit: L,
+        side: Side,
+    ) -> L::Mask;
+    /// Returns whether a sphere hides the light at the end of a shadow ray. If the formulas' errors
+    /// are bounded, the light is not near the sphere.
+    fn sphere_hides<L: Lane>(
+        sphere: &Sphere<L::Scalar>,
+        ray: &Ray<L>,
+        precomputed: &sphere::RayPrecomputation<L>,
+        wanted: L::Mask,
+        limit: L,
+    ) -> L::Mask;
+    /// Returns whether a triangle hides the light at the end of a shadow ray, on this side of it.
+    fn triangle_hides<L: Lane>(
+        triangle: &Triangle<L::Scalar>,
+        ray: &Ray<L>,
+        precomputed: &triangle::RayPrecomputation<L>,
+        wanted: L::Mask,
+        limit: L,
+        side: impl FnOnce() -> Side,
+    ) -> L::Mask;
+    /// Returns whether a cylinder hides the light at the end of a shadow ray. If the formulas'
+    /// errors are bounded, the light is not near the cylinder.
+    fn cylinder_hides<L: Lane>(
+        cylinder: &Cylinder<L::Scalar>,
+        ray: &Ray<L>,
+        precomputed: &cylinder::RayPrecomputation<L>,
+        wanted: L::Mask,
+        limit: L,
+    ) -> L::Mask;
 }
 
 /// The part of the formulas that depends on the ray alone, for each kind of shape that the scene
@@ -67,8 +103,4 @@ pub(crate) struct LightPath<L> {
     pub(crate) to_light: Vector<L>,
     /// The length of the path.
     pub(crate) distance: L,
-    /// One over the length.
-    pub(crate) inverse_distance: L,
-    /// The sum of the magnitudes of the coordinates of both ends.
-    pub(crate) reach: L,
 }

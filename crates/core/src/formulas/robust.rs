@@ -5,9 +5,10 @@ use crate::ray::Ray;
 use crate::shapes::SurfacePoint;
 use crate::shapes::cylinder::{self, Cylinder};
 use crate::shapes::plane::Plane;
+use crate::shapes::side::Side;
 use crate::shapes::sphere::{self, Sphere};
 use crate::shapes::triangle::{self, Triangle};
-use crate::simd::lane::{Lane, Scalar};
+use crate::simd::lane::Lane;
 use crate::simd::vector::Vector;
 
 /// The family of [`Formulas::Robust`](crate::Formulas::Robust).
@@ -58,12 +59,53 @@ impl Family for Robust {
         on_surface
     }
 
-    /// Measures `t` in units of the path, and ends a little before 1, so that a surface that passes
-    /// through the light does not hide it. The position of such a surface is known to about 16
-    /// roundings of the coordinates of both ends, like the offset bound of a hit.
+    /// Measures `t` in units of the path.
     #[inline(always)]
     fn shadow_ray<L: Lane>(path: &LightPath<L>) -> (Ray<L>, L) {
-        let uncertain = path.reach * path.inverse_distance * L::literal(16.0 * L::Scalar::ROUNDOFF);
-        (Ray { origin: path.start, direction: path.toward }, L::literal(1.0) - uncertain)
+        (Ray { origin: path.start, direction: path.toward }, L::literal(1.0))
+    }
+
+    #[inline(always)]
+    fn plane_hides<L: Lane>(
+        plane: &Plane<L::Scalar>,
+        ray: &Ray<L>,
+        _limit: L,
+        side: Side,
+    ) -> L::Mask {
+        plane.separates(ray.origin, side)
+    }
+
+    #[inline(always)]
+    fn sphere_hides<L: Lane>(
+        sphere: &Sphere<L::Scalar>,
+        ray: &Ray<L>,
+        precomputed: &sphere::RayPrecomputation<L>,
+        wanted: L::Mask,
+        _limit: L,
+    ) -> L::Mask {
+        sphere.hides(ray, precomputed, wanted)
+    }
+
+    #[inline(always)]
+    fn triangle_hides<L: Lane>(
+        triangle: &Triangle<L::Scalar>,
+        ray: &Ray<L>,
+        precomputed: &triangle::RayPrecomputation<L>,
+        wanted: L::Mask,
+        _limit: L,
+        side: impl FnOnce() -> Side,
+    ) -> L::Mask {
+        triangle.hides(ray, precomputed, wanted, side)
+    }
+
+    #[inline(always)]
+    fn cylinder_hides<L: Lane>(
+        cylinder: &Cylinder<L::Scalar>,
+        ray: &Ray<L>,
+        precomputed: &cylinder::RayPrecomputation<L>,
+        wanted: L::Mask,
+        _limit: L,
+    ) -> L::Mask {
+        cylinder.hides(ray, precomputed, wanted)
     }
 }

@@ -5,6 +5,7 @@ use crate::ray::{Ray, miss};
 use crate::shapes::SurfacePoint;
 use crate::shapes::cylinder::{self, Cylinder};
 use crate::shapes::plane::Plane;
+use crate::shapes::side::Side;
 use crate::shapes::sphere::{self, Sphere};
 use crate::shapes::triangle::{self, Triangle};
 use crate::simd::lane::{Lane, Mask};
@@ -96,6 +97,50 @@ impl Family for Textbook {
     #[inline(always)]
     fn shadow_ray<L: Lane>(path: &LightPath<L>) -> (Ray<L>, L) {
         (Ray { origin: path.start, direction: path.to_light }, path.distance - L::literal(OFFSET))
+    }
+
+    #[inline(always)]
+    fn plane_hides<L: Lane>(
+        plane: &Plane<L::Scalar>,
+        ray: &Ray<L>,
+        limit: L,
+        _side: Side,
+    ) -> L::Mask {
+        Self::plane(plane, ray).lt(limit)
+    }
+
+    #[inline(always)]
+    fn sphere_hides<L: Lane>(
+        sphere: &Sphere<L::Scalar>,
+        ray: &Ray<L>,
+        precomputed: &sphere::RayPrecomputation<L>,
+        wanted: L::Mask,
+        limit: L,
+    ) -> L::Mask {
+        Self::sphere(sphere, ray, precomputed, wanted).lt(limit)
+    }
+
+    #[inline(always)]
+    fn triangle_hides<L: Lane>(
+        triangle: &Triangle<L::Scalar>,
+        ray: &Ray<L>,
+        precomputed: &triangle::RayPrecomputation<L>,
+        wanted: L::Mask,
+        limit: L,
+        _side: impl FnOnce() -> Side,
+    ) -> L::Mask {
+        Self::triangle(triangle, ray, precomputed, wanted).lt(limit)
+    }
+
+    #[inline(always)]
+    fn cylinder_hides<L: Lane>(
+        cylinder: &Cylinder<L::Scalar>,
+        ray: &Ray<L>,
+        precomputed: &cylinder::RayPrecomputation<L>,
+        wanted: L::Mask,
+        limit: L,
+    ) -> L::Mask {
+        Self::cylinder(cylinder, ray, precomputed, wanted).lt(limit)
     }
 }
 

@@ -1,6 +1,7 @@
 //! The open cylinder around a vertical axis: a circle in x and z, bounded in y.
 
 use super::aabb::Aabb;
+use super::quadric::Center;
 use super::{SurfacePoint, offset_bound, quadric};
 use crate::ray::{Ray, miss};
 use crate::scene;
@@ -68,6 +69,19 @@ impl<S: Scalar> Cylinder<S> {
         precomputed: &RayPrecomputation<L>,
         wanted: L::Mask,
     ) -> L {
+        let (near, far, _) = self.roots(ray, precomputed, wanted);
+        L::select(near.lt(miss()), near, far)
+    }
+
+    /// Returns the two [roots](quadric::roots) where they are above 0 and on the wall, or else a
+    /// miss, and their middle.
+    #[inline(always)]
+    fn roots<L: Lane<Scalar = S>>(
+        &self,
+        ray: &Ray<L>,
+        precomputed: &RayPrecomputation<L>,
+        wanted: L::Mask,
+    ) -> (L, L, L) {
         let zero = L::literal(0.0);
         let radius_squared = L::splat(self.radius_squared);
         let Vector { x: dx, y: dy, z: dz } = ray.direction;
@@ -78,25 +92,71 @@ impl<S: Scalar> Cylinder<S> {
         let discriminant = radius_squared - (ax * ax + az * az);
         let crossed = wanted & zero.le(discriminant);
         if !crossed.any() {
-            return miss();
+            return (miss(), miss(), closest);
         }
         let closest = closest + (ax * dx + az * dz) * precomputed.inverse_square;
         let power = (cx * cx + cz * cz) - radius_squared;
         // The cylinder is behind a ray that starts outside of it: both roots are below 0.
         let crossed = crossed & !(closest.lt(zero) & zero.lt(power));
         if !crossed.any() {
-            return miss();
+            return (miss(), miss(), closest);
         }
         let (near, far) = quadric::roots(closest, discriminant, power, precomputed.inverse_square);
-        // Differences of coordinates come first, so that a scene far from the origin loses nothing.
-        let (to_bottom, to_top) =
-            (L::splat(self.bottom.y) - ray.origin.y, L::splat(self.top) - ray.origin.y);
-        let on_wall = |t: L| {
-            let climb = dy * t;
-            zero.lt(t) & to_bottom.le(climb) & climb.le(to_top)
-        };
-        let t = L::select(on_wall(near), near, L::select(on_wall(far), far, miss()));
-        L::select(crossed, t, miss())
+        let on_wall = |t: L| L::select(crossed & self.on_wall(ray.origin.y, dy, t), t, miss());
+        (on_wall(near), on_wall(far), closest)
+    }
+
+    /// Returns whether the point at `t` of a ray is on the wall, at `t > 0`, given the ray's y.
+    /// Differences of coordinates come first, so that a scene far from the origin loses nothing.
+    #[inline(always)]
+    fn on_wall<L: Lane<Scalar = S>>(&self, from: L, direction: L, t: L) -> L::Mask {
+        let (to_bottom, to_top) = (L::splat(self.bottom.y) - from, L::splat(self.top) - from);
+        let climb = direction * t;
+        L::literal(0.0).lt(t) & to_bottom.le(climb) & climb.le(to_top)
+    }
+
+    /// Returns whether the wall hides the light at the ray's `t = 1`. The light is farther from the
+    /// axis than the wall and not [near](Center) it. So both roots lie before the light if their
+    /// middle does.
+    #[inline(always)]
+    pub(crate) fn hides<L: Lane<Scalar = S>>(
+        &self,
+        ray: &Ray<L>,
+        precomputed: &RayPrecomputation<L>,
+        wanted: L::Mask,
+    ) -> L::Mask {
+        let (near, far, middle) = self.roots(ray, precomputed, wanted);
+        middle.lt(L::literal(1.0)) & (near.lt(miss()) | far.lt(miss()))
+    }
+
+    /// Returns whether the wall hides the `light` that it is near, at the ray's `t = 1`.
+    ///
+    /// The roots are those of the ray back from the light, so that a wall through the light has one
+    /// at 0, exactly. The sides of both ends, across the axis, tell which roots lie between them.
+    #[inline(always)]
+    pub(crate) fn hides_near<L: Lane<Scalar = S>>(
+        &self,
+        ray: &Ray<L>,
+        precomputed: &RayPrecomputation<L>,
+        (light, at): (Vector<S>, &Center<S>),
+    ) -> L::Mask {
+        let zero = L::literal(0.0);
+        let Vector { x: dx, y: dy, z: dz } = ray.direction;
+        let (cx, cz) =
+            (L::splat(self.bottom.x) - ray.origin.x, L::splat(self.bottom.z) - ray.origin.z);
+        let start_power = (cx * cx + cz * cz) - L::splat(self.radius_squared);
+        let inverse_square = precomputed.inverse_square;
+        let power = L::splat(at.power);
+        let leaving = L::splat(at.light.x) * dx + L::splat(at.light.z) * dz;
+        let closest = leaving * inverse_square;
+        let (near, far) = quadric::roots(closest, leaving * closest - power, power, inverse_square);
+        let on_wall = |t: L| self.on_wall(L::splat(light.y), -dy, t);
+        if at.power.lt(S::literal(0.0)) {
+            return zero.lt(start_power) & on_wall(far);
+        }
+        let through =
+            zero.le(start_power) & zero.lt(cx * dx + cz * dz) & (on_wall(near) | on_wall(far));
+        through | (zero.lt(power) & start_power.lt(zero) & on_wall(near))
     }
 
     /// Returns the point of the cylinder that is closest to `near`.

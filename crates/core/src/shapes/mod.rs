@@ -8,8 +8,9 @@
 pub(crate) mod aabb;
 pub(crate) mod cylinder;
 pub(crate) mod plane;
-mod quadric;
+pub(crate) mod quadric;
 pub(crate) mod shape_list;
+pub(crate) mod side;
 pub(crate) mod sphere;
 pub(crate) mod triangle;
 
@@ -50,6 +51,9 @@ impl<L: Lane> SurfacePoint<L> {
     }
 }
 
+/// The roundings of its coordinates by which the height of a point above a surface is off, at most.
+pub(crate) const ROUNDINGS: f64 = 12.0;
+
 /// Returns a bound on the distance between a computed point on a surface and the surface, as the
 /// next intersection computes that distance.
 ///
@@ -62,5 +66,5 @@ impl<L: Lane> SurfacePoint<L> {
 #[inline(always)]
 fn offset_bound<L: Lane>(normal: Vector<L>, point: Vector<L>, reach: Vector<L>) -> L {
     use crate::simd::lane::Scalar;
-    normal.abs().dot(point.abs() + reach) * L::literal(12.0 * L::Scalar::ROUNDOFF)
+    normal.abs().dot(point.abs() + reach) * L::literal(ROUNDINGS * L::Scalar::ROUNDOFF)
 }

@@ -1,5 +1,6 @@
 //! The infinite plane.
 
+use super::side::Side;
 use super::{SurfacePoint, offset_bound};
 use crate::ray::{Ray, miss};
 use crate::scene;
@@ -50,23 +51,36 @@ impl<S: Scalar> Plane<S> {
     /// |n_i d_i| / |n . d| + u`.
     #[inline(always)]
     pub(crate) fn intersect<L: Lane<Scalar = S>>(&self, ray: &Ray<L>) -> L {
-        let t = match self.across {
+        let slope = match self.across {
             // The other products are zeros, which change no sum.
-            Some(Across { axis, normal, point }) => {
-                let (origin, direction) = match axis {
-                    0 => (ray.origin.x, ray.direction.x),
-                    1 => (ray.origin.y, ray.direction.y),
-                    _ => (ray.origin.z, ray.direction.z),
-                };
-                let normal = L::splat(normal);
-                normal * (L::splat(point) - origin) / (normal * direction)
-            }
-            None => {
-                let normal = Vector::splat(self.normal);
-                normal.dot(Vector::splat(self.point) - ray.origin) / normal.dot(ray.direction)
-            }
+            Some(Across { axis, normal, .. }) => L::splat(normal) * component(ray.direction, axis),
+            None => Vector::splat(self.normal).dot(ray.direction),
         };
+        let t = self.depth(ray.origin) / slope;
         L::select(L::literal(0.0).lt(t), t, miss())
+    }
+
+    /// Returns the depth of a point below the plane, in lengths of the normal.
+    #[inline(always)]
+    fn depth<L: Lane<Scalar = S>>(&self, of: Vector<L>) -> L {
+        match self.across {
+            Some(Across { axis, normal, point }) => {
+                L::splat(normal) * (L::splat(point) - component(of, axis))
+            }
+            None => Vector::splat(self.normal).dot(Vector::splat(self.point) - of),
+        }
+    }
+
+    /// Returns whether the plane separates `start` from a point on this side of it. That is known
+    /// to `4u sum |n_i (point_i - start_i)|`, which the angle of the way does not change.
+    #[inline(always)]
+    pub(crate) fn separates<L: Lane<Scalar = S>>(&self, start: Vector<L>, side: Side) -> L::Mask {
+        let (zero, depth) = (L::literal(0.0), self.depth(start));
+        match side {
+            Side::Front => zero.lt(depth),
+            Side::Back => depth.lt(zero),
+            Side::Unknown => zero.lt(zero),
+        }
     }
 
     /// Returns the point of the plane that is closest to `near`.
@@ -75,5 +89,14 @@ impl<S: Scalar> Plane<S> {
         let (anchor, normal) = (Vector::splat(self.point), Vector::splat(self.unit_normal));
         let point = near - normal * normal.dot(near - anchor);
         SurfacePoint { point, normal, offset_bound: offset_bound(normal, point, anchor.abs()) }
+    }
+}
+
+#[inline(always)]
+fn component<L: Lane>(v: Vector<L>, axis: usize) -> L {
+    match axis {
+        0 => v.x,
+        1 => v.y,
+        _ => v.z,
     }
 }

@@ -1,6 +1,17 @@
 //! The two roots where a ray meets a circle or a sphere.
 
 use crate::simd::lane::Lane;
+use crate::simd::vector::Vector;
+
+/// A circle or a sphere as seen from a light that it holds or is close to.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Center<S> {
+    /// The vector from the centre to the light.
+    pub(crate) light: Vector<S>,
+    /// The light's squared distance from the centre less the squared radius: below 0 inside, and 0
+    /// where the surface passes through the light.
+    pub(crate) power: S,
+}
 
 /// Returns the roots `near <= far`, which are valid where `discriminant >= 0`.
 ///

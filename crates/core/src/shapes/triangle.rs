@@ -1,6 +1,7 @@
 //! The triangle: its edges are included, and neighbours meet without gaps.
 
 use super::aabb::Aabb;
+use super::side::Side;
 use super::{SurfacePoint, offset_bound};
 use crate::ray::{AxisOrder, Ray, miss};
 use crate::scene;
@@ -105,6 +106,29 @@ impl<S: Scalar> Triangle<S> {
         wanted: L::Mask,
     ) -> L {
         let zero = L::literal(0.0);
+        let (inside, [a, b, c]) = self.crossed(precomputed, wanted);
+        if !inside.any() {
+            return miss();
+        }
+        let normal = Vector::splat(self.normal);
+        let slope = normal.accurate_dot(ray.direction);
+        let t = normal.accurate_dot(Vector::splat(self.vertices[0]) - ray.origin) / slope;
+        let (lowest, highest) = (a.min(b).min(c), a.max(b).max(c));
+        let (from, to) = (lowest / precomputed.along, highest / precomputed.along);
+        let t = t.max(from.min(to)).min(from.max(to));
+        // A ray parallel to the plane misses, and so does every ray if the triangle has no area.
+        L::select(inside & zero.lt(slope.abs()) & zero.lt(t), t, miss())
+    }
+
+    /// Returns the rays whose lines cross the triangle, and the positions of its corners along the
+    /// dominant axis, from their origins.
+    #[inline(always)]
+    fn crossed<L: Lane<Scalar = S>>(
+        &self,
+        precomputed: &RayPrecomputation<L>,
+        wanted: L::Mask,
+    ) -> (L::Mask, [L; 3]) {
+        let zero = L::literal(0.0);
         // Written out, because a `map` over an array is not always inlined.
         let [a, b, c] = self.vertices;
         let (a, b, c) = (precomputed.project(a), precomputed.project(b), precomputed.project(c));
@@ -114,17 +138,41 @@ impl<S: Scalar> Triangle<S> {
         let back = u.le(zero) & v.le(zero) & w.le(zero);
         // All three are zero if the ray lies in the triangle's plane.
         let inside = wanted & (front | back) & !(front & back);
+        (inside, [a[2], b[2], c[2]])
+    }
+
+    /// Returns whether the triangle hides a point on this side of its plane, at the ray's `t = 1`.
+    ///
+    /// It does if the ray's line crosses it, and its plane separates the ray's ends. The side of
+    /// the start is known to `2u sum |n_i (a_i - o_i)|`, which the angle of the ray does not change.
+    /// The triangle also has to reach into the part of the dominant axis between the ends, however
+    /// little, because a box that does not is skipped.
+    #[inline(always)]
+    pub(crate) fn hides<L: Lane<Scalar = S>>(
+        &self,
+        ray: &Ray<L>,
+        precomputed: &RayPrecomputation<L>,
+        wanted: L::Mask,
+        side: impl FnOnce() -> Side,
+    ) -> L::Mask {
+        let zero = L::literal(0.0);
+        let (inside, [a, b, c]) = self.crossed(precomputed, wanted);
         if !inside.any() {
-            return miss();
+            return inside;
         }
-        let normal = Vector::splat(self.normal);
-        let slope = normal.accurate_dot(ray.direction);
-        let t = normal.accurate_dot(Vector::splat(self.vertices[0]) - ray.origin) / slope;
-        let (lowest, highest) = (a[2].min(b[2]).min(c[2]), a[2].max(b[2]).max(c[2]));
-        let (from, to) = (lowest / precomputed.along, highest / precomputed.along);
-        let t = t.max(from.min(to)).min(from.max(to));
-        // A ray parallel to the plane misses, and so does every ray if the triangle has no area.
-        L::select(inside & zero.lt(slope.abs()) & zero.lt(t), t, miss())
+        let depth =
+            Vector::splat(self.normal).accurate_dot(Vector::splat(self.vertices[0]) - ray.origin);
+        let separated = match side() {
+            Side::Front => zero.lt(depth),
+            Side::Back => depth.lt(zero),
+            Side::Unknown => return zero.lt(zero),
+        };
+        let (lowest, highest) = (a.min(b).min(c), a.max(b).max(c));
+        let along = precomputed.along;
+        let forward = zero.lt(along);
+        let first = L::select(forward, lowest, -highest);
+        let last = L::select(forward, highest, -lowest);
+        inside & separated & first.le(along.abs()) & zero.lt(last)
     }
 
     /// Returns the point of the triangle that is closest to `near`.
