@@ -5,6 +5,9 @@
 //! ([`oracle`](crate::oracle)). Half of the lights lie in the surface, the others before or beyond
 //! it, down to 10^-12 of its size. The way to the light may graze the surface. So hits, the start
 //! of a shadow ray and its end have to be right together.
+//!
+//! The format of [`cases`](crate::cases) has no place for them: its rays have no end, and its
+//! answers are a `t`.
 
 use std::fmt;
 

@@ -4,6 +4,7 @@
 
 use crate::accel::occluders::Occluders;
 use crate::scene;
+use crate::shapes::ROUNDINGS;
 use crate::simd::lane::{Lane, Scalar};
 use crate::simd::vector::Vector;
 
@@ -23,8 +24,8 @@ pub(crate) struct Material<S> {
 pub(crate) struct Light<S> {
     pub(crate) position: Vector<S>,
     /// The rounding error of each coordinate of the position, as part of the error of its height
-    /// above a surface.
-    pub(crate) uncertain: Vector<S>,
+    /// above a surface. Only for a light in a flat surface, which it does not light.
+    pub(crate) uncertain: Option<Vector<S>>,
     /// The colour times the power.
     pub(crate) intensity: Vector<S>,
     /// The primitives that may hide the light.
@@ -45,12 +46,16 @@ impl<S: Scalar> Material<S> {
 }
 
 impl<S: Scalar> Light<S> {
-    /// Makes a light whose position is known up to this many roundings.
-    pub(crate) fn new(light: &scene::Light, roundings: f64, occluders: Occluders<S>) -> Self {
+    pub(crate) fn new(
+        light: &scene::Light,
+        in_flat_surface: bool,
+        occluders: Occluders<S>,
+    ) -> Self {
         let position = Vector::rounded(light.position);
+        let uncertain = position.abs() * S::from_f64(ROUNDINGS * S::ROUNDOFF);
         Self {
             position,
-            uncertain: position.abs() * S::from_f64(roundings * S::ROUNDOFF),
+            uncertain: in_flat_surface.then_some(uncertain),
             intensity: Vector::rounded(light.color * light.power),
             occluders,
         }

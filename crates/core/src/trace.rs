@@ -14,8 +14,8 @@ use crate::formulas::{Family, LightPath};
 use crate::material::{Finish, Light, Material, power};
 use crate::ray::Ray;
 use crate::scene::{Plane, Scene};
+use crate::shapes::SurfacePoint;
 use crate::shapes::side::Side;
-use crate::shapes::{ROUNDINGS, SurfacePoint};
 use crate::simd::lane::{Lane, Mask, Scalar};
 use crate::simd::vector::Vector;
 use glam::DVec3;
@@ -81,9 +81,9 @@ impl<S: Scalar, F: Family> World<S, F> {
             if F::ERROR_BOUNDED {
                 planes.retain(|&(_, side)| side != Side::Unknown);
             }
-            let roundings = if F::ERROR_BOUNDED { ROUNDINGS } else { 0.0 };
             let occluders = Occluders::new(scene, at, planes, cones_from(at));
-            Some(Light::new(light, roundings, occluders))
+            let in_flat_surface = F::ERROR_BOUNDED && occluders.is_in_flat_surface(scene, at);
+            Some(Light::new(light, in_flat_surface, occluders))
         });
         let mirrored_eye = |plane: &Plane| {
             let mirror = scene.materials[plane.material].reflection > 0.0;
@@ -206,7 +206,6 @@ impl<S: Scalar, F: Family> World<S, F> {
         let (zero, two) = (L::literal(0.0), L::literal(2.0));
         let Surface { at, finish } = surface;
         let start = at.start();
-        let steepness = at.normal.abs();
         let facing = at.normal.dot(ray.direction);
         let mut color = finish.color * finish.ambient;
         // Lights are numbered from 2, because 1 stands for a hit in a path hash.
@@ -219,8 +218,12 @@ impl<S: Scalar, F: Family> World<S, F> {
             let inverse_distance = L::literal(1.0) / distance;
             let to_light = toward * inverse_distance;
             let cosine = at.normal.dot(to_light);
-            let uncertain = steepness.dot(Vector::splat(light.uncertain)) * inverse_distance;
-            let above = active & uncertain.lt(cosine);
+            // Without such a light, this is one branch.
+            let highest_below = match light.uncertain {
+                Some(uncertain) => at.normal.abs().dot(Vector::splat(uncertain)) * inverse_distance,
+                None => zero,
+            };
+            let above = active & highest_below.lt(cosine);
             if !above.any() {
                 continue;
             }

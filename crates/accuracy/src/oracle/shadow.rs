@@ -44,7 +44,7 @@ pub struct ExactOccluder {
 #[derive(Clone, Debug)]
 enum Surface {
     /// A plane, or the triangle with these corners in it.
-    Flat { point: Vector, normal: Vector, corners: Option<[Vector; 3]> },
+    Flat { point: Vector, normal: Vector, corners: Option<Box<[Vector; 3]>> },
     /// A sphere, or a cylinder between two heights.
     Round { center: Vector, square_radius: RBig, ends: Option<[RBig; 2]> },
 }
@@ -135,11 +135,12 @@ impl Surface {
             |corners| corners.iter().map(|corner| float(&size(corner))).fold(0.0, f64::max),
         );
         if !in_surface(&height, farthest + float(&size(light)))? {
+            let corners = corners.map(Box::new);
             return Some(Self::Flat { point, normal, corners });
         }
         let up = &height / &dot(&normal, &normal);
         let moved = |v: Vector| std::array::from_fn(|i| &v[i] + &up * &normal[i]);
-        let corners = corners.map(|corners| corners.map(moved));
+        let corners = corners.map(|corners| Box::new(corners.map(moved)));
         Some(Self::Flat { point: light.clone(), normal, corners })
     }
 

@@ -27,10 +27,9 @@ fn pixels(case: &ShadowCase, precision: Precision) -> Vec<Rgb> {
     executions.map(pixel).collect()
 }
 
-/// Counts the decidable cases in the precision that `precision` gives, and the wrong ones of them,
-/// of which it shows the first.
-fn wrong(cases: &[ShadowCase], precision: impl Fn(&ShadowCase) -> Option<Precision>) -> usize {
-    let (mut decidable, mut wrong, mut lit) = (0, 0, 0);
+/// Checks the decidable cases, each in the precision that `precision` gives.
+fn assert_right(cases: &[ShadowCase], precision: impl Fn(&ShadowCase) -> Option<Precision>) {
+    let (mut decidable, mut wrong, mut lit) = (0, vec![], 0);
     for case in cases {
         let Some(precision) = precision(case) else { continue };
         if !case.is_decidable(precision) {
@@ -42,16 +41,13 @@ fn wrong(cases: &[ShadowCase], precision: impl Fn(&ShadowCase) -> Option<Precisi
             |[red, green, blue]: &Rgb| *red == 0.0 && (*green > 0.0) == case.lit && *blue == 0.0;
         let found = pixels(case, precision);
         if !found.iter().all(right) {
-            if wrong == 0 {
-                println!("{precision}: {found:?}: {case}");
-            }
-            wrong += 1;
+            wrong.push(format!("{precision}: {found:?}: {case}"));
         }
     }
-    println!("{wrong} of {decidable} are wrong");
     assert!(decidable >= DECIDABLE, "only {decidable} are decidable");
     assert!(lit * 4 > decidable && lit * 4 < decidable * 3, "{lit} of {decidable} are lit");
-    wrong
+    let count = wrong.len();
+    assert_eq!(count, 0, "of {decidable} are wrong; the first: {:?}", wrong.first());
 }
 
 /// Catches an end of shadow rays that does not know the angle, the scale or the scene's precision.
@@ -59,8 +55,8 @@ fn wrong(cases: &[ShadowCase], precision: impl Fn(&ShadowCase) -> Option<Precisi
 fn lights_in_surfaces_and_close_to_them_are_seen_or_hidden() {
     let cases = shadow_cases(2026, DRAWN);
     let chosen = |case: &ShadowCase| PrecisionEstimate::of(&case.scene).precision();
-    assert_eq!(wrong(&cases, |_| Some(Precision::F64)), 0);
-    assert_eq!(wrong(&cases, |case| Some(chosen(case))), 0);
+    assert_right(&cases, |_| Some(Precision::F64));
+    assert_right(&cases, |case| Some(chosen(case)));
     // Where `f32` is chosen, or could be.
-    assert_eq!(wrong(&cases, |_| Some(Precision::F32)), 0);
+    assert_right(&cases, |_| Some(Precision::F32));
 }

@@ -24,7 +24,7 @@ pub(crate) struct Occluders<S> {
     /// tries each of them.
     pub(crate) cones: Option<ConeSet<S>>,
     /// The spheres and cylinders around or close to the light, by ascending number. They are tried
-    /// first and apart from the others, by formulas that start from the light.
+    /// apart from the others, by formulas that start from the light.
     pub(crate) near: Vec<NearLight<S>>,
     pub(super) light: Vector<S>,
     /// The sides of triangles whose planes are so close to the light that this precision cannot
@@ -57,10 +57,19 @@ impl<S: Scalar> Occluders<S> {
         }
     }
 
+    /// Returns whether the light lies in a plane, or in that of a triangle, as far as this
+    /// precision can tell.
+    pub(crate) fn is_in_flat_surface(&self, scene: &Scene, light: DVec3) -> bool {
+        let side = |plane| Side::of_plane(plane, light, IN_SURFACE * S::ROUNDOFF);
+        !self.sides.is_empty() || scene.planes.iter().any(|plane| side(plane) == Side::Unknown)
+    }
+
     /// Returns the light's side of the plane of the triangle with this number.
     #[inline(always)]
     pub(crate) fn side(&self, number: u32, triangle: &Triangle<S>) -> Side {
-        if let Ok(i) = self.sides.binary_search_by_key(&number, |&(number, _)| number) {
+        if !self.sides.is_empty()
+            && let Ok(i) = self.sides.binary_search_by_key(&number, |&(number, _)| number)
+        {
             return self.sides[i].1;
         }
         let above = triangle.normal.dot(self.light - triangle.vertices[0]);
@@ -106,14 +115,13 @@ fn near_light<S: Scalar>(scene: &Scene, light: DVec3) -> Vec<NearLight<S>> {
         .filter_map(|(number, (axes, center, radius))| {
             let outward = (light - center) * axes;
             let power = outward.length_squared() - radius * radius;
-            if !(power <= radius * radius) {
-                return None;
-            }
+            // NaN, from numbers that overflow, is not near.
+            let near = power <= radius * radius;
             let reach = outward.abs().dot(light.abs() + center.abs()) + radius * radius;
             let on_surface = power.abs() <= IN_SURFACE * WRITTEN * reach;
             let power = S::from_f64(if on_surface { 0.0 } else { power });
             let center = Center { light: Vector::rounded(outward), power };
-            Some(NearLight { number, center })
+            near.then_some(NearLight { number, center })
         })
         .collect()
 }

@@ -1,6 +1,6 @@
 //! Occlusion: whether anything lies between a point and a light.
 
-use crate::accel::occluders::{NearLight, Occluders};
+use crate::accel::occluders::Occluders;
 use crate::accel::primitives::Primitives;
 use crate::formulas::{Family, LightPath, RayPrecomputations};
 use crate::ray::Ray;
@@ -10,7 +10,8 @@ use crate::shapes::sphere;
 use crate::shapes::triangle;
 use crate::simd::lane::{Lane, Mask, Scalar};
 
-/// The rays of a packet to one light.
+/// The rays of a packet to one light. It is made where it is used: kept in memory meanwhile, it
+/// would cost a per cent of a rendering without packets.
 #[derive(Clone, Copy)]
 struct Shadow<'a, L: Lane> {
     ray: &'a Ray<L>,
@@ -35,60 +36,72 @@ impl<S: Scalar> Primitives<S> {
         for &(plane, side) in &occluders.planes {
             clear = clear & !F::plane_hides(&self.planes[plane as usize], ray, limit, side);
         }
-        let near_first: &[NearLight<S>] = if F::ERROR_BOUNDED { &occluders.near } else { &[] };
-        for near in near_first {
-            clear = clear & !self.near_hides(near, ray, occluders);
-        }
         if !clear.any() {
             return wanted;
         }
-        let shadow = Shadow { ray, limit, occluders };
         match (&self.bvh, &occluders.cones) {
             (Some(bvh), _) if F::ERROR_BOUNDED => ray.by_direction_class(clear, |class, wanted| {
                 let precomputed = self.precompute(ray, Some(class.order));
                 bvh.traverse(ray, class, wanted, limit, |leaf, reached| {
                     clear = clear
                         & !(reached
-                            & !self.clear_of_leaf::<L, F>(leaf, &shadow, &precomputed, reached));
+                            & !self.clear_of_leaf::<L, F>(
+                                leaf,
+                                &Shadow { ray, limit, occluders },
+                                &precomputed,
+                                reached,
+                            ));
                     (wanted & clear, limit)
                 });
             }),
             (_, Some(cones)) if F::ERROR_BOUNDED => {
                 cones.candidates((-path.to_light, path.distance), clear, |i, inside| {
-                    clear = clear & !self.bounded_hides::<L, F>(i, &shadow, inside);
+                    clear = clear
+                        & !self.bounded_hides::<L, F>(i, &Shadow { ray, limit, occluders }, inside);
                     clear
                 });
             }
             _ => self.by_axis::<L, F>(ray, clear, |leaf, precomputed, wanted| {
                 let reached = wanted & clear;
                 clear = clear
-                    & !(reached & !self.clear_of_leaf::<L, F>(leaf, &shadow, precomputed, reached));
+                    & !(reached
+                        & !self.clear_of_leaf::<L, F>(
+                            leaf,
+                            &Shadow { ray, limit, occluders },
+                            precomputed,
+                            reached,
+                        ));
             }),
+        }
+        if F::ERROR_BOUNDED && !occluders.near.is_empty() {
+            clear = clear & !self.near_hides(ray, occluders);
         }
         wanted & !clear
     }
 
     /// Returns the rays from which a sphere or a cylinder near the light hides it.
     #[inline(never)]
-    fn near_hides<L: Lane<Scalar = S>>(
-        &self,
-        near: &NearLight<S>,
-        ray: &Ray<L>,
-        occluders: &Occluders<S>,
-    ) -> L::Mask {
-        match self.spheres.get(near.number) {
-            Some(sphere) => sphere.hides_near(ray, &near.center),
-            None => {
-                let precomputed = cylinder::RayPrecomputation::new(ray);
-                let light = (occluders.light, &near.center);
-                self.cylinders.of_kind(near.number).hides_near(ray, &precomputed, light)
-            }
+    fn near_hides<L: Lane<Scalar = S>>(&self, ray: &Ray<L>, occluders: &Occluders<S>) -> L::Mask {
+        let mut hidden = L::first_lanes(0);
+        for near in &occluders.near {
+            hidden = hidden
+                | match self.spheres.get(near.number) {
+                    Some(sphere) => sphere.hides_near(ray, &near.center),
+                    None => {
+                        let precomputed = cylinder::RayPrecomputation::new(ray);
+                        let light = (occluders.light, &near.center);
+                        let cylinder = self.cylinders.of_kind(near.number);
+                        cylinder.hides_near(ray, &precomputed, light)
+                    }
+                };
         }
+        hidden
     }
 
     /// Returns the rays of `wanted` from which the primitive at index `i` of all bounded ones hides
-    /// the light, in file order. There is no BVH.
-    #[inline(always)]
+    /// the light, in file order. There is no BVH. It is not inlined, for the reason that
+    /// `Primitives::sphere` is not.
+    #[inline(never)]
     fn bounded_hides<L: Lane<Scalar = S>, F: Family>(
         &self,
         mut i: usize,
@@ -106,9 +119,9 @@ impl<S: Scalar> Primitives<S> {
     }
 
     // The following return the rays of `wanted` from which the shape at index `i` of a kind hides
-    // the light. They are not inlined, for the reason that `Primitives::sphere` is not.
+    // the light.
 
-    #[inline(never)]
+    #[inline(always)]
     fn sphere_hides<L: Lane<Scalar = S>, F: Family>(
         &self,
         i: usize,
@@ -120,7 +133,7 @@ impl<S: Scalar> Primitives<S> {
         unless_near::<L, F>(self.spheres.first + i as u32, hidden, occluders)
     }
 
-    #[inline(never)]
+    #[inline(always)]
     fn triangle_hides<L: Lane<Scalar = S>, F: Family>(
         &self,
         i: usize,
@@ -137,7 +150,7 @@ impl<S: Scalar> Primitives<S> {
         wanted & !clear
     }
 
-    #[inline(never)]
+    #[inline(always)]
     fn cylinder_hides<L: Lane<Scalar = S>, F: Family>(
         &self,
         i: usize,

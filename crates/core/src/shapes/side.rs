@@ -1,6 +1,6 @@
 //! The sides of surfaces that a point is on, as far as rounding lets them be told.
 
-use crate::scene::{Plane, near_one, unit};
+use crate::scene::{Plane, unit};
 use crate::simd::lane::Scalar;
 use glam::DVec3;
 
@@ -51,7 +51,7 @@ impl Side {
     /// Returns the side of the plane through a triangle's corners, whose coordinates are known up
     /// to `roundoff`.
     pub(crate) fn of_corners([a, b, c]: [DVec3; 3], point: DVec3, roundoff: f64) -> Self {
-        let (ab, ac) = (near_one(b - a), near_one(c - a));
+        let (ab, ac) = (b - a, c - a);
         let normal = ab.cross(ac);
         let reach = a.abs().max(b.abs()).max(c.abs()) + point.abs();
         // Each component of the normal is a difference of two products, of factors that are

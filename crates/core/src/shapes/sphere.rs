@@ -110,12 +110,12 @@ impl<S: Scalar> Sphere<S> {
 
     /// Returns whether the sphere hides the light that it is near, at the ray's `t = 1`.
     ///
-    /// From inside it hides a light outside, and from outside a light inside. From outside it hides
-    /// a light outside, or on it, if the ray comes out of the sphere before the light: with `l` from
-    /// the centre to the light, that is `g = l . d > 0` and `g^2 >= power d^2`. Both sides are known
-    /// to a few roundings of their own size, because `power` was computed in `f64`. On the sphere it
-    /// is 0. There the angle between ray and surface decides alone, up to `3u sum |l_i d_i|` and the
-    /// rounding of `d`.
+    /// From inside it hides a light outside, and from outside a light inside. From outside it
+    /// hides a light outside, or on it, if the ray comes out of the sphere before the light: with
+    /// `l` from the centre to the light, that is `g = l . d > 0` and `g^2 >= power d^2`. Both sides
+    /// are known to a few roundings of their own size, because `power` was computed in `f64`. On
+    /// the sphere it is 0. There the angle between ray and surface decides alone, up to
+    /// `3u sum |l_i d_i|` and the rounding of `d`.
     #[inline(always)]
     pub(crate) fn hides_near<L: Lane<Scalar = S>>(&self, ray: &Ray<L>, at: &Center<S>) -> L::Mask {
         let zero = L::literal(0.0);
