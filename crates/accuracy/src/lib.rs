@@ -11,6 +11,7 @@
 //! * [`oracle`]: computes the exact answer to a case by rational arithmetic;
 //! * [`families`]: seeded generators of 36 families of hard cases, with their answers;
 //! * [`shadows`]: whether a surface hides a light that lies in it or close to it;
+//! * [`ties`]: which of the surfaces in one plane is seen;
 //! * [`kernel`]: runs the tracer's own kernel on a case;
 //! * [`mod@score`]: verdicts, errors in ulps and leaks per family, and their [`thresholds`];
 //! * [`guarantees`]: the properties that hold for any ray and primitive, for fuzzing.
@@ -42,6 +43,7 @@ pub mod outcomes;
 pub mod score;
 pub mod shadows;
 pub mod thresholds;
+pub mod ties;
 pub mod tradeoff;
 
 pub use cases::{Expect, HardCase, Primitive, Ray};

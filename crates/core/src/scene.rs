@@ -290,6 +290,11 @@ pub(crate) fn near_one(v: DVec3) -> DVec3 {
     v.to_array().map(|component| libm::scalbn(component, -exponent)).into()
 }
 
+/// Returns the normal of the plane through a triangle's corners, of a length near 1.
+pub(crate) fn normal([a, b, c]: [DVec3; 3]) -> DVec3 {
+    near_one(near_one(b - a).cross(near_one(c - a)))
+}
+
 /// Returns `v` at unit length, for any finite `v` except zero. It is scaled first, so that no
 /// square overflows.
 pub(crate) fn unit(v: DVec3) -> DVec3 {

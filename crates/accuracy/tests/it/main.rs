@@ -7,6 +7,7 @@ mod kernel;
 mod kernel_guarantees;
 mod oracle;
 mod shadows;
+mod ties;
 
 /// Returns the items as a file of JSON lines.
 fn written<T: serde::Serialize>(items: &[T]) -> String {

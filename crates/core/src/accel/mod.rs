@@ -3,6 +3,7 @@
 pub(crate) mod behind_culling;
 pub(crate) mod bounding_sphere;
 pub(crate) mod bvh;
+mod coincident;
 pub(crate) mod cones;
 pub(crate) mod hit;
 pub(crate) mod occluders;

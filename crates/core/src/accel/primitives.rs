@@ -2,6 +2,7 @@
 
 use crate::accel::bounding_sphere::BoundingSphere;
 use crate::accel::bvh::Bvh;
+use crate::accel::coincident::Coincident;
 use crate::accel::cones::ConeSet;
 use crate::accel::hit::Hit;
 use crate::execution::Acceleration;
@@ -70,10 +71,21 @@ impl<S: Scalar> Primitives<S> {
             triangle_bounds: vec![],
             materials,
         };
+        primitives.unite(scene);
         if acceleration == Acceleration::Auto {
             primitives.build_bvh();
         }
         primitives
+    }
+
+    /// Decides between surfaces that lie in one plane.
+    fn unite(&mut self, scene: &Scene) {
+        let Coincident { covered_planes, covered_triangles, sharing } = Coincident::of(scene);
+        covered_planes.into_iter().for_each(|i| self.planes[i].remove());
+        covered_triangles.into_iter().for_each(|i| self.triangles.shapes[i].remove());
+        for (i, first) in sharing {
+            self.triangles.shapes[i].share_plane(&scene.triangles[first]);
+        }
     }
 
     /// Returns the number of primitives.

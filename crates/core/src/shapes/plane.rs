@@ -42,6 +42,11 @@ impl<S: Scalar> Plane<S> {
         Self { point, normal, unit_normal: Vector::rounded(scene::unit(plane.normal)), across }
     }
 
+    /// Makes the plane one that no ray hits.
+    pub(crate) fn remove(&mut self) {
+        (self.normal, self.across) = (Vector::zero(), None);
+    }
+
     /// Returns `t = n . (point - origin) / n . d`. The difference comes first, so that a scene far
     /// from the origin of coordinates loses nothing. A parallel ray gives an infinity or NaN, which
     /// is a miss.

@@ -16,9 +16,13 @@ pub(crate) struct Triangle<S> {
     /// The normal, of a length near 1: making it unit would cost digits. Zero if rounding took the
     /// triangle's area; then no ray hits it.
     pub(crate) normal: Vector<S>,
+    /// A corner, of this triangle or of another in the same plane: the point from which `t` is
+    /// computed.
+    pub(crate) anchor: Vector<S>,
+    /// The distance by which `t` may lie beyond the corners, as a share of the coordinates: 0 for a
+    /// triangle that shares its plane with no other.
+    slack: S,
     unit_normal: Vector<S>,
-    /// The largest magnitude of each coordinate.
-    reach: Vector<S>,
 }
 
 /// The part of the formulas that depends on the ray alone, for rays with one dominant axis: the
@@ -65,19 +69,38 @@ impl<S: Scalar> Triangle<S> {
         // The plane is that of the rounded corners, because the scene's corners may lie on another.
         let vertices = triangle.vertices.map(Vector::rounded);
         let [a, b, c] = vertices.map(Vector::widened);
-        let normal = if scene::parallel(b - a, c - a) {
-            DVec3::ZERO
-        } else {
-            scene::near_one(scene::near_one(b - a).cross(scene::near_one(c - a)))
-        };
+        let normal =
+            if scene::parallel(b - a, c - a) { DVec3::ZERO } else { scene::normal([a, b, c]) };
         let unit_normal = normal.normalize_or_zero();
         let [normal, unit_normal] = [normal, unit_normal].map(Vector::rounded);
-        Self {
-            vertices,
-            normal,
-            unit_normal,
-            reach: Vector::rounded(a.abs().max(b.abs()).max(c.abs())),
-        }
+        Self { vertices, normal, anchor: vertices[0], slack: S::literal(0.0), unit_normal }
+    }
+
+    /// Makes the triangle one that no ray hits.
+    pub(crate) fn remove(&mut self) {
+        self.normal = Vector::zero();
+    }
+
+    /// Gives the triangle the plane of `other`, which is its own as they are written. Then `t` is
+    /// the same for all that share it.
+    ///
+    /// The plane is that of the corners before they were rounded, and known to one rounding of its
+    /// normal and its point, wherever it lies. `t` may leave the range of the corners by its
+    /// rounding error, since the range differs: by 16 roundings of the sums of the coordinates,
+    /// which is less than [`MARGIN`](super::MARGIN) of the largest.
+    pub(crate) fn share_plane(&mut self, other: &scene::Triangle) {
+        let normal = scene::normal(other.vertices);
+        let turned = if normal.dot(self.normal.widened()) < 0.0 { -normal } else { normal };
+        self.normal = Vector::rounded(turned);
+        self.unit_normal = Vector::rounded(turned.normalize_or_zero());
+        self.anchor = Vector::rounded(other.vertices[0]);
+        self.slack = S::from_f64(16.0 * S::ROUNDOFF);
+    }
+
+    /// Returns the largest magnitude of each coordinate.
+    fn reach(&self) -> Vector<S> {
+        let [a, b, c] = self.vertices;
+        a.abs().max(b.abs()).max(c.abs())
     }
 
     /// Returns the box around it.
@@ -112,8 +135,15 @@ impl<S: Scalar> Triangle<S> {
         }
         let normal = Vector::splat(self.normal);
         let slope = normal.accurate_dot(ray.direction);
-        let t = normal.accurate_dot(Vector::splat(self.vertices[0]) - ray.origin) / slope;
+        let t = normal.accurate_dot(Vector::splat(self.anchor) - ray.origin) / slope;
         let (lowest, highest) = (a.min(b).min(c), a.max(b).max(c));
+        let (lowest, highest) = if S::literal(0.0).lt(self.slack) {
+            let reach = L::splat(self.reach().sum_of_magnitudes());
+            let slack = (ray.origin.sum_of_magnitudes() + reach) * L::splat(self.slack);
+            (lowest - slack, highest + slack)
+        } else {
+            (lowest, highest)
+        };
         let (from, to) = (lowest / precomputed.along, highest / precomputed.along);
         let t = t.max(from.min(to)).min(from.max(to));
         // A ray parallel to the plane misses, and so does every ray if the triangle has no area.
@@ -144,9 +174,9 @@ impl<S: Scalar> Triangle<S> {
     /// Returns whether the triangle hides a point on this side of its plane, at the ray's `t = 1`.
     ///
     /// It does if the ray's line crosses it, and its plane separates the ray's ends. The side of
-    /// the start is known to `2u sum |n_i (a_i - o_i)|`, which the angle of the ray does not change.
-    /// The triangle also has to reach into the part of the dominant axis between the ends, however
-    /// little, because a box that does not is skipped.
+    /// the start is known to `2u sum |n_i (a_i - o_i)|`, which the angle of the ray does not
+    /// change. The triangle also has to reach into the part of the dominant axis between the ends,
+    /// however little, because a box that does not is skipped.
     #[inline(always)]
     pub(crate) fn hides<L: Lane<Scalar = S>>(
         &self,
@@ -183,7 +213,7 @@ impl<S: Scalar> Triangle<S> {
         SurfacePoint {
             point,
             normal,
-            offset_bound: offset_bound(normal, point, Vector::splat(self.reach)),
+            offset_bound: offset_bound(normal, point, Vector::splat(self.reach())),
         }
     }
 }

@@ -88,6 +88,12 @@ impl<L: Lane> Vector<L> {
         Self::new(self.x.abs(), self.y.abs(), self.z.abs())
     }
 
+    /// Returns the sum of the magnitudes of the components.
+    #[inline(always)]
+    pub(crate) fn sum_of_magnitudes(self) -> L {
+        self.x.abs() + self.y.abs() + self.z.abs()
+    }
+
     /// Returns the vector at unit length.
     #[inline(always)]
     pub(crate) fn unit(self) -> Self {
