@@ -1,5 +1,6 @@
-//! Rayon's parallel iterator splits the range of items in two for as long as idle threads steal
-//! parts. It has a thread for each core. It belongs to lesson 8, `rayon-pixels`.
+//! Rayon's parallel iterator halves the range of items until there are about twice as many parts as
+//! threads. A stolen part is halved again; a part that nobody steals is not. Rayon has a thread for
+//! each core. It belongs to lesson 8, `rayon-pixels`.
 
 use rayon::prelude::*;
 use std::time::Instant;

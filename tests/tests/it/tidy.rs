@@ -174,8 +174,11 @@ fn a_strategy_is_a_short_lesson() {
     lessons.sort();
     for (number, (_, name, text)) in (1..).zip(&lessons) {
         assert!(text.starts_with(&format!("//! Lesson {number}, `")), "{name}: lesson {number}?");
-        for part in ["In the lab", "New", "What it decides", "What it costs", "When it is right"] {
-            assert!(text.contains(part), "{name}: {part}?");
+        let labels = ["//! In the lab report: ", "//! In OpenMP: "];
+        let counterpart = text.lines().nth(2).expect("a third line");
+        assert!(labels.iter().any(|l| counterpart.starts_with(l)), "{name}: one of {labels:?}?");
+        for part in ["New", "What it decides", "What it costs", "When it is right"] {
+            assert!(text.contains(&format!("//! * **{part}**: ")), "{name}: {part}?");
         }
         assert!(text.lines().count() <= 80, "{name}: longer than a page");
     }

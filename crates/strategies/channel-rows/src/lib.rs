@@ -1,9 +1,11 @@
 //! Lesson 5, `channel-rows`: threads send finished rows to the one thread that owns the image.
 //!
-//! In the lab: no counterpart. Its threads share the image; these share only messages.
+//! In OpenMP: no counterpart. Its threads share the image; these share a counter and send their
+//! rows.
 //!
 //! * **New**: no thread writes to the image but its owner, so there is nothing to lock. And the
-//!   rows are no longer dealt out beforehand: a counter says which row is next (lesson 6).
+//!   rows are no longer dealt out beforehand: an atomic counter says which row is next. A thread
+//!   adds one to it and computes the row of that number.
 //! * **What it decides**: nothing beforehand. A free thread takes the next row, computes it into
 //!   memory of its own and sends that. The caller's thread copies it.
 //! * **What it costs**: an allocation, a message and a copy for every row, starting the threads,

@@ -1,16 +1,17 @@
 //! Lesson 3, `mutex-image` and `std-mutex-image`: equal shares of the pixels, one lock.
 //!
-//! In the lab: its second version, `std::thread` with a `std::mutex` around the image.
+//! In the lab report: `std::thread` with equal shares of the pixels, a `std::mutex` for each pixel.
 //!
-//! * **New**: a mutex. It lets threads write to one image that was not split before, and only one
-//!   of them at a time. `thread_team::run` starts and joins threads as lesson 2 does, and stops all
-//!   of them when one fails.
+//! * **New**: a mutex. Threads may share the image without splitting it, and write to it one at a
+//!   time. `thread_team::run` starts and joins threads as lesson 2 does, and stops all of them when
+//!   one fails.
 //! * **What it decides**: everything beforehand. Each thread gets an equal range of the pixels.
 //! * **What it costs**: a lock for every pixel, starting the threads, and all of the imbalance:
 //!   if one range has the expensive corner, one thread does the work.
 //! * **When it is right**: never here, since pixels are disjoint and need no lock. Compare it with
-//!   lesson 2, which has the same imbalance without a lock. `std-mutex-image` has the lock of the
-//!   standard library in place of `parking_lot`'s, to show whether the choice matters.
+//!   lesson 2, which has the same imbalance, no lock, and one call for each band only.
+//!   `std-mutex-image` has the lock of the standard library in place of `parking_lot`'s, to show
+//!   whether the choice matters.
 
 use rayweave_contract::*;
 use rayweave_thread_team as thread_team;

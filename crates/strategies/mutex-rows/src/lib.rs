@@ -1,6 +1,6 @@
 //! Lesson 4, `mutex-rows`: as `mutex-image`, but each thread locks the image once a row.
 //!
-//! In the lab: its second version with the lock moved out of the inner loop.
+//! In OpenMP: `schedule(static)` over the rows, and `#pragma omp critical` around the copy.
 //!
 //! * **New**: a thread computes a row into memory of its own and copies it under the lock. A lock's
 //!   cost follows from how often it is taken and how long it is held.

@@ -1,14 +1,17 @@
 //! Lesson 13, `openmp-static`, `openmp-dynamic`, `openmp-guided`: OpenMP's own loop over the tiles.
 //!
-//! In the lab: its first version. `loops.c` has the three pragmas; the work is in Rust.
+//! In the lab report: `static` and `dynamic, 1`, over columns. `loops.c` has the three pragmas; the
+//! work is in Rust.
 //!
 //! * **New**: a loop in C calls Rust from its threads, at the price of `unsafe` (in `ffi`).
 //! * **What it decides**: `static` deals out equal ranges of the tiles beforehand; with `dynamic` a
-//!   free thread takes the next tile, with `guided` the remaining tiles divided by N.
+//!   free thread takes the next tile, with `guided` a part of the remaining tiles (gcc: divided by
+//!   N).
 //! * **What it costs**: a C compiler at build time, and an uncontended lock for every tile, since
 //!   the compiler cannot know that OpenMP gives each index to one thread.
 //! * **When it is right**: when a program in C or C++ has OpenMP already, and its loops call Rust.
-//!   In Rust alone `tile-queue` and `rayon-tiles` do the same without `unsafe`.
+//!   In Rust alone `tile-queue` does what `dynamic` does, and `scoped-bands` what `static` does,
+//!   without `unsafe`.
 //!
 //! The caller's thread is one of the N. `OMP_PROC_BIND`, `OMP_PLACES` and `OMP_WAIT_POLICY` work as
 //! in C. The number of threads is the requested one, whatever `OMP_NUM_THREADS` or `OMP_DYNAMIC`

@@ -1,6 +1,7 @@
 //! Lesson 12, `paralight-tiles`: a parallel loop over the tiles by a library for slices alone.
 //!
-//! In the lab: `#pragma omp parallel for` over tiles, with stealing.
+//! In OpenMP: LLVM's `schedule(nonmonotonic: dynamic)` also steals from ranges, a quarter of the
+//! rest at a time.
 //!
 //! * **New**: work stealing without deques. A thread's share is a range, two numbers in one atomic;
 //!   a thread that is done takes half of another's rest by one compare-and-swap.

@@ -1,12 +1,14 @@
 //! Lesson 8, `rayon-pixels`: a parallel loop over the pixels.
 //!
-//! In the lab: its first version, `#pragma omp parallel for`, with the two loops made one.
+//! In OpenMP: `#pragma omp parallel for collapse(2)` over the two loops, but idle threads steal.
 //!
-//! * **New**: a library spreads the loop. rayon halves the range of pixels until there are enough
-//!   parts, and an idle thread steals a part. Its threads wait in a pool, started once.
+//! * **New**: a library spreads the loop. rayon halves the range of pixels until there are about
+//!   twice as many parts as threads. A stolen part is halved again; a part that nobody steals is
+//!   not. rayon's threads wait in a pool, started once.
 //! * **What it decides**: that pixels are independent, and nothing else.
 //! * **What it costs**: a call of the work for every pixel. Whatever neighbouring pixels could
 //!   share or compute side by side is lost (`--equal-work off` shows how much that is here).
+//!   Neighbouring expensive pixels may stay with one thread (lesson 10).
 //! * **When it is right**: as the first thing to try. It is one line away from the sequential loop
 //!   and hard to get wrong. Leave it when single items are too small, or share work.
 

@@ -1,6 +1,6 @@
 //! Lesson 9, `rayon-rows`: a parallel loop over the rows.
 //!
-//! In the lab: `#pragma omp parallel for` before the outer of the two loops.
+//! In the lab report: `#pragma omp parallel for` over the outer loop, there over columns.
 //!
 //! * **New**: larger items. The loop is as short as that over pixels, and calls the work once a
 //!   row, so neighbouring pixels of a row can share work.

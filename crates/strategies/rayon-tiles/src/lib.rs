@@ -1,13 +1,13 @@
 //! Lesson 10, `rayon-tiles`: a parallel loop over the tiles.
 //!
-//! In the lab: `#pragma omp taskloop` over tiles comes nearest.
+//! In OpenMP: `#pragma omp taskloop` over the tiles comes nearest.
 //!
-//! * **New**: a limit of rayon's splitting. A range is halved while idle threads steal from it, not
-//!   once a thread computes it. With all of the cost in one corner, the threads that are done wait
-//!   for that range (`scenes/loads/corner.toml`). `with_max_len(1)` would make every tile a part of
-//!   its own.
+//! * **New**: a limit of rayon's splitting. A range is halved until there are about twice as many
+//!   parts as threads. A stolen part is halved again; a part that nobody steals is not. With all of
+//!   the cost in one corner, the threads that are done wait for the one that computes that part
+//!   (`scenes/loads/corner.toml`). `with_max_len(1)` would make every tile a part of its own.
 //! * **What it decides**: that a tile is the smallest piece of work.
-//! * **What it costs**: cutting the image into tiles, and waiting for a range that was not split.
+//! * **What it costs**: cutting the image into tiles, and waiting for a part that was not halved.
 //! * **When it is right**: for moderately uneven work whose pixels share something with their
 //!   neighbours, in a program that has rayon already.
 

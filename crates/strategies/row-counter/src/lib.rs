@@ -1,9 +1,10 @@
 //! Lesson 6, `row-counter`: a free thread takes the next row, by one atomic counter.
 //!
-//! In the lab: `#pragma omp parallel for schedule(dynamic, 1)` over the rows, by hand.
+//! In OpenMP: `#pragma omp parallel for schedule(dynamic, 1)` over the rows; the lab report has it
+//! over the columns.
 //!
-//! * **New**: an atomic counter alone balances the load. A thread adds one to it and computes the
-//!   row of that number; an expensive row only means that the others take more of the rest.
+//! * **New**: the counter of lesson 5 without the channel: threads write rows in place. While one
+//!   computes an expensive row, the others take more of the rest.
 //! * **What it decides**: nothing beforehand.
 //! * **What it costs**: an atomic addition and a lock for every row, and starting the threads. No
 //!   two threads get the same number, but the compiler cannot know. So each row has a lock of its

@@ -1,13 +1,13 @@
 //! Lesson 2, `scoped-bands`: a thread for each of N bands of rows, with the standard library alone.
 //!
-//! In the lab: `std::thread` and `join`; with OpenMP, `#pragma omp parallel for schedule(static)`.
+//! In OpenMP: `#pragma omp parallel for schedule(static)` over the rows.
 //!
 //! * **New**: threads. `thread::scope` waits for its threads before it returns, so they may borrow
 //!   the image. `split_off_mut` gives each thread rows that it alone may write: the compiler has
 //!   proved that no lock is needed.
 //! * **What it decides**: everything beforehand. The bands are equal but for one row.
-//! * **What it costs**: starting the threads in every rendering. It takes as long as the most
-//!   expensive band.
+//! * **What it costs**: starting the threads in every rendering. The image takes as long as the
+//!   most expensive band.
 //! * **When it is right**: for even work, where nothing can be cheaper, and as a first step.
 
 use rayweave_contract::*;

@@ -1,6 +1,6 @@
 //! Lesson 1, `sequential`: the caller's thread computes tile after tile.
 //!
-//! In the lab: `for (y ...) for (x ...) image[y][x] = color(x, y);`, two loops over the pixels.
+//! In the lab report: `for (x ...) for (y ...) image[y][x] = color(x, y);`, column after column.
 //!
 //! * **New**: the work is a function that fills a tile of the image. A strategy is the loop around
 //!   it: it says which thread computes which tile, and when.

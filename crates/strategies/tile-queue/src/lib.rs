@@ -1,6 +1,6 @@
 //! Lesson 7, `tile-queue`: a free thread takes the next tile from a lock-free queue.
 //!
-//! In the lab: `#pragma omp parallel for schedule(dynamic, 1)` over tiles in place of columns.
+//! In OpenMP: `#pragma omp parallel for schedule(dynamic, 1)` over the tiles.
 //!
 //! * **New**: a queue of tiles that own what they write. A tile has the slices of the rows that it
 //!   covers, and no pixel is in two tiles. So threads write without a lock, and the compiler has

@@ -1,6 +1,7 @@
 //! Lesson 11, `work-stealing`: each thread has tiles of its own, and takes another's when done.
 //!
-//! In the lab: what rayon, or LLVM's OpenMP with `schedule(nonmonotonic: dynamic)`, does inside.
+//! In OpenMP: no counterpart. rayon's threads have such deques too, but of halves of a range, and a
+//! thief takes one.
 //!
 //! * **New**: a deque for each thread. Its owner takes tiles from the front, undisturbed by others;
 //!   an idle thread takes half of another's from the back. The deques are `crossbeam`'s, after
