@@ -14,7 +14,7 @@ const ORDERS: usize = 99;
 
 /// Costs in nanoseconds.
 const CHEAPEST: f64 = 20e3;
-const DEAREST: f64 = 40e6;
+const MOST_EXPENSIVE: f64 = 40e6;
 
 const OVERHEADS: Overheads = Overheads {
     start: 200e3,
@@ -27,8 +27,8 @@ const OVERHEADS: Overheads = Overheads {
 
 const WAYS: [(&str, Scheduling); 4] = [
     ("equal shares, fixed beforehand", Scheduling::Static),
-    ("the next 64 items to whoever is free", Scheduling::Dynamic { chunk: 64 }),
-    ("the next item to whoever is free", Scheduling::Dynamic { chunk: 1 }),
+    ("the next 64 items to a free thread", Scheduling::Dynamic { chunk: 64 }),
+    ("the next item to a free thread", Scheduling::Dynamic { chunk: 1 }),
     ("rayon's `par_iter`", Scheduling::RecursiveSplit),
 ];
 
@@ -48,9 +48,9 @@ fn shuffle(costs: &mut [f64], state: &mut u64) {
 
 /// Returns the table in Markdown. The figure of the random orders is their median.
 pub fn table() -> String {
-    let ratio = (DEAREST / CHEAPEST).powf(1.0 / (ITEMS - 1) as f64);
+    let ratio = (MOST_EXPENSIVE / CHEAPEST).powf(1.0 / (ITEMS - 1) as f64);
     let sorted: Vec<f64> = (0..ITEMS).map(|item| CHEAPEST * ratio.powi(item as i32)).collect();
-    let expensive = |item| if item < ITEMS / 16 { DEAREST } else { CHEAPEST };
+    let expensive = |item| if item < ITEMS / 16 { MOST_EXPENSIVE } else { CHEAPEST };
     let together: Vec<f64> = (0..ITEMS).map(expensive).collect();
     let mut text = [
         "| who gets which item | random order | sorted by cost | the expensive ones first |\n",
