@@ -1,5 +1,6 @@
 //! Runs every command that the documents show, so that none of them becomes outdated.
 
+use rayweave_registry::STRATEGIES;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -25,6 +26,9 @@ const RUN_BY_CI: [&str; 4] = ["cargo run --release", "cargo test", "cargo bench"
 /// Commands that other tests cover, and fuzzing, which has no end.
 const RUN_ELSEWHERE: [&str; 3] = ["dealt-rows", "--example ", "cargo fuzz"];
 
+/// The folder of stored results.
+const RESULTS: &str = "docs/results";
+
 /// The file of cases that the documents' commands read, and its name there.
 const CASES: (&str, &str) = ("crates/accuracy/corpus/hard-cases.jsonl", "cases.jsonl");
 
@@ -32,7 +36,7 @@ fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// Returns the commands in the blocks of shell code, without comments.
+/// Returns the commands in the blocks of shell code, without comments, and those in tables.
 fn commands(document: &str) -> Vec<String> {
     let mut commands = Vec::new();
     let mut inside = false;
@@ -40,6 +44,10 @@ fn commands(document: &str) -> Vec<String> {
         match line.strip_prefix("```") {
             Some(language) => inside = language == "sh",
             None if inside => commands.push(line.split('#').next().unwrap_or("").trim().to_owned()),
+            None if line.starts_with('|') => {
+                let code = line.split('`').skip(1).step_by(2);
+                commands.extend(code.filter(|c| c.starts_with("cargo run ")).map(str::to_owned));
+            }
             None => {}
         }
     }
@@ -84,10 +92,12 @@ fn the_documents_commands_work() {
         }
     }
     fs::copy(repository().join(CASES.0), folder.path().join(CASES.1)).expect("copied");
-    let mut run = 0;
     for document in DOCUMENTS {
         let text = fs::read_to_string(repository().join(document)).expect("the document");
-        for command in commands(&text) {
+        let commands = commands(&text);
+        let has_block = text.contains("```sh\n");
+        assert!(!(has_block && commands.is_empty()), "{document}: no command was found");
+        for command in commands {
             let is_run_by_ci = RUN_BY_CI.iter().any(|known| command == *known)
                 || command.starts_with("cargo bench ")
                 || RUN_ELSEWHERE.iter().any(|known| command.contains(known));
@@ -108,10 +118,8 @@ fn the_documents_commands_work() {
                 i32::from(arguments.starts_with("intersect") && arguments.contains("textbook"));
             let status = output.status.code();
             assert!(status == Some(expected) && said.is_empty(), "{document}: `{command}`: {said}");
-            run += 1;
         }
     }
-    assert!(run >= 5, "only {run} commands were found");
 }
 
 #[test]
@@ -137,6 +145,71 @@ fn the_documents_links_lead_somewhere() {
             }
         }
     }
+}
+
+/// Catches a stored first screen of an earlier program.
+#[test]
+fn the_stored_first_screen_is_todays() {
+    let text = stored("first-screen.txt");
+    let first = text.lines().next().unwrap_or("");
+    assert!(["Fastest on ", "On "].iter().any(|start| first.starts_with(start)), "{first}");
+    let wide: Vec<&str> = text.lines().filter(|line| line.chars().count() > 80).collect();
+    assert!(wide.is_empty(), "wider than 80 columns: {wide:#?}");
+}
+
+/// Catches figures that lack a strategy, or have the order of an earlier registry.
+#[test]
+fn the_stored_figures_are_of_the_registrys_strategies() {
+    let entries = fs::read_dir(repository().join(RESULTS)).expect("the results");
+    let names = entries.map(|e| e.expect("an entry").file_name().into_string().expect("UTF-8"));
+    let tables: Vec<String> = names.filter(|name| name.ends_with(".csv")).collect();
+    assert!(!tables.is_empty());
+    for name in tables {
+        let text = stored(&name);
+        let mut lines = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
+        let titles = lines.next().expect("titles");
+        let column = |title| titles.iter().position(|t| *t == title).expect("the column");
+        let (strategy, control) = (column("strategy"), column("control"));
+        let found: Vec<&str> =
+            lines.filter(|line| line[control] == "false").map(|line| line[strategy]).collect();
+        let expected: Vec<&str> = STRATEGIES.iter().map(|strategy| strategy.name).collect();
+        assert_eq!(found, expected, "{name}");
+    }
+}
+
+/// Catches a stored list of strategies that is not what the program prints.
+#[test]
+fn the_stored_list_of_strategies_is_the_programs() {
+    let output = Command::new(env!("CARGO_BIN_EXE_rayweave"))
+        .arg("strategies")
+        .output()
+        .expect("the program starts");
+    let printed = String::from_utf8(output.stdout).expect("UTF-8");
+    let (printed, stored) = (listed(&printed), listed(&stored("strategies.txt")));
+    assert_eq!(printed.len(), STRATEGIES.len());
+    assert_eq!(printed.len(), stored.len());
+    for (printed, stored) in printed.iter().zip(&stored) {
+        if !printed.contains("  unavailable here: ") {
+            assert_eq!(printed, stored);
+        }
+    }
+}
+
+/// Returns the entries of a list of strategies: a line that begins with a name, and the indented
+/// lines below it.
+fn listed(text: &str) -> Vec<String> {
+    let mut entries: Vec<String> = Vec::new();
+    for line in text.lines() {
+        match entries.last_mut() {
+            Some(entry) if line.starts_with(' ') => *entry += &format!("{line}\n"),
+            _ => entries.push(format!("{line}\n")),
+        }
+    }
+    entries
+}
+
+fn stored(name: &str) -> String {
+    fs::read_to_string(repository().join(RESULTS).join(name)).expect("a stored result")
 }
 
 /// Catches a table, screen or picture in a document that is not the stored one, and a document that
