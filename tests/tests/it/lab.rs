@@ -94,6 +94,15 @@ fn the_glossary_is_sorted_and_in_use() {
         .map(|(_, text)| text.to_lowercase())
         .collect();
     for word in words {
-        assert!(texts.iter().any(|text| text.contains(&word)), "{word} is used nowhere");
+        let used = texts.iter().any(|text| contains_word(text, &word));
+        assert!(used, "{word} is used nowhere");
     }
+}
+
+/// Says whether the word stands in the text alone, not within a longer word.
+fn contains_word(text: &str, word: &str) -> bool {
+    let is_letter = |c: char| c.is_alphanumeric() || c == '_';
+    text.match_indices(word).any(|(at, _)| {
+        !text[..at].ends_with(is_letter) && !text[at + word.len()..].starts_with(is_letter)
+    })
 }
