@@ -22,7 +22,7 @@ use std::time::{Duration, Instant};
 /// A process counts as stuck after this many times the time of the slowest process before it.
 const PATIENCE: u32 = 100;
 
-/// The shortest time after which a process counts as stuck, and the time in which each uses the CPU.
+/// The shortest time after which a process counts as stuck, and the longest without CPU time.
 const LEAST_PATIENCE: Duration = Duration::from_secs(60);
 
 /// A request for one rendering: the argument of `sample`, as JSON.
