@@ -80,7 +80,7 @@ fn a_scene_may_be_called_like_an_option() {
     fs::copy(program::scene("lab.toml"), folder.path().join("--help.toml")).expect("copied");
     let small = "--size 4x4 --antialiasing 0 --strategy sequential --time-limit 1";
     let text = rayweave(folder.path(), &format!("compare {small} -- --help.toml")).expect_success();
-    assert!(text.contains("(--help.toml, 4 x 4 pixels, one ray each)"), "{text}");
+    assert!(text.contains("--help.toml, 4 x 4 pixels with one ray each; 1 strategy, "), "{text}");
 }
 
 /// Catches ignored limits: 40 rounds although the goal needs more, or more although it is met.
@@ -228,7 +228,7 @@ fn compare_does_not_count_adaptive_samples() {
     let arguments = "compare --size 8x8 --antialiasing 2 --adaptive on --strategy sequential \
                      --time-limit 1 --full";
     let (table, object) = rayweave_json(folder.path(), arguments);
-    assert!(table.contains("antialiasing 2 (adaptive)") && !table.contains("/px"), "{table}");
+    assert!(table.contains("up to 25 rays each") && !table.contains("/px"), "{table}");
     let first = &object["results"][0];
     assert_eq!((&first["adaptive"], first.get("primary_rays")), (&true.into(), Some(&Value::Null)));
 }

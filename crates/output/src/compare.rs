@@ -19,6 +19,7 @@ mod screen_tests;
 mod table;
 #[cfg(test)]
 mod tests;
+mod verdict;
 
 pub use changes::{Change, comparable};
 pub use table::column_names;
@@ -33,11 +34,14 @@ use serde::{Deserialize, Serialize};
 /// The schema number of the JSON. It changes when a key is removed or changes its meaning.
 const SCHEMA: u32 = 2;
 
+/// The scene's name in a [`Subject`] without a scene file.
+pub const BUILT_IN_SCENE: &str = "report (built in)";
+
 /// A scene with its settings. Times of equal subjects can be compared. All but the last four
 /// settings change the image.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Subject {
-    /// The scene file's path as it was given, or another name.
+    /// The scene file's path as it was given, or [`BUILT_IN_SCENE`].
     pub scene: String,
     /// Width of the image in pixels.
     pub width: u32,
@@ -232,6 +236,18 @@ impl Results {
         let alike = Subject { share_samples: true, ..unshared.subject.clone() };
         let times = |record: &Record| record.measurement.samples_ns.clone();
         (alike == shared.subject).then(|| ratio_interval(&times(unshared), &times(shared)))?
+    }
+}
+
+impl Subject {
+    /// Returns whether pixels have a lattice of samples, which they may share.
+    fn has_lattice(&self) -> bool {
+        self.antialiasing > 0 && self.sampling == "lattice"
+    }
+
+    /// Returns whether pixels of a piece share samples.
+    fn shares_samples(&self) -> bool {
+        self.has_lattice() && (self.share_samples || self.adaptive)
     }
 }
 

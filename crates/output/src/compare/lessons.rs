@@ -1,15 +1,16 @@
 //! The lessons of a comparison: sentences that its own figures carry.
 
-use super::ranking::{Section, is_static, rank};
-use super::screen::{longer, names};
-use super::{Record, Subject};
+use super::Record;
+use super::ranking::{LARGEST_ERROR, Section, is_static, percent_up, rank};
+use super::verdict::{names, percent_longer};
 use rayweave_contract::{Granularity, Output, Scheduling};
+use rayweave_measure::statistics::{median, ratio_interval};
 
 /// The imbalance below which the cost counts as even.
-pub(super) const EVEN: f64 = 1.1;
+pub(super) const EVEN_IMBALANCE: f64 = 1.1;
 
 /// The largest number of lessons.
-const MOST: usize = 3;
+const MAX_LESSONS: usize = 3;
 
 /// Returns what a subject's records teach, the most important lesson first.
 pub(super) fn of(group: &[Record], sections: &[Section<'_>], available: usize) -> Vec<String> {
@@ -24,18 +25,12 @@ pub(super) fn of(group: &[Record], sections: &[Section<'_>], available: usize) -
     if !section.is_certain() {
         return Vec::new();
     }
-    let lessons = [work(group), shares(section), dispatch(section), locks(section)];
-    lessons.into_iter().flatten().take(MOST).map(|lesson| format!("{on}{lesson}")).collect()
-}
-
-/// Returns whether pixels of a piece share samples.
-pub(super) fn samples_are_shared(subject: &Subject) -> bool {
-    let has_lattice = subject.antialiasing > 0 && subject.sampling == "lattice";
-    has_lattice && (subject.share_samples || subject.adaptive)
+    let lessons = [work_differs(group), shares(section), dispatch(section), locks(section)];
+    lessons.into_iter().flatten().take(MAX_LESSONS).map(|lesson| format!("{on}{lesson}")).collect()
 }
 
 /// Returns by how much the work of the strategies differs, if it does.
-fn work(group: &[Record]) -> Option<String> {
+fn work_differs(group: &[Record]) -> Option<String> {
     let figure = |name: &str, of: &dyn Fn(&Record) -> Option<f64>, unit: &str, digits: usize| {
         let kinds = [Granularity::Tile, Granularity::Band, Granularity::Row, Granularity::Pixel];
         let kinds = kinds.into_iter().filter_map(|kind| {
@@ -49,8 +44,8 @@ fn work(group: &[Record]) -> Option<String> {
             .map(|by| kinds.iter().map(|(_, figure)| *figure).reduce(by).unwrap_or(1.0));
         (most > 1.05 * least).then(|| {
             let kinds =
-                kinds.iter().map(|(kind, figure)| format!("{figure:.digits$}{unit} by {kind}s"));
-            format!("{name} {}", kinds.collect::<Vec<_>>().join(", "))
+                kinds.iter().map(|(kind, figure)| format!("{figure:.digits$}{unit} in {kind}s"));
+            format!("{name} are {}", kinds.collect::<Vec<_>>().join(", "))
         })
     };
     let rays = |record: &Record| {
@@ -58,47 +53,65 @@ fn work(group: &[Record]) -> Option<String> {
         Some(record.measurement.primary_rays? as f64 / pixels)
     };
     let lanes = |record: &Record| record.lanes_in_use().map(|share| share * 100.0);
-    let figures = [figure("rays a pixel:", &rays, "", 1), figure("lanes in use:", &lanes, " %", 0)];
+    let figures =
+        [figure("primary rays per pixel", &rays, "", 1), figure("lanes in use", &lanes, " %", 0)];
     let figures: Vec<String> = figures.into_iter().flatten().collect();
-    (!figures.is_empty()).then(|| format!("Not threading alone: {}.", figures.join("; ")))
+    (!figures.is_empty()).then(|| format!("The work differs: {}.", figures.join("; ")))
 }
 
-/// Returns what is gained by giving the next piece to whoever is free.
+/// Returns what is gained by scheduling at run time. The median of each group stands for it: the
+/// best of many rows would be luckier than the best of few.
 fn shares(section: &Section<'_>) -> Option<String> {
-    let best = |is_fixed: bool| section.rows.iter().find(|row| is_static(row) == is_fixed);
-    let (fixed, free) = (best(true)?, best(false)?);
-    if !is_same_work(fixed, free) {
+    let first = *section.rows.first()?;
+    let rows_of = |is_fixed: bool| -> Vec<&Record> {
+        let rows = section.rows.iter().copied();
+        rows.filter(|row| is_static(row) == is_fixed && is_same_work(row, first)).collect()
+    };
+    let (fixed, free) = (rows_of(true), rows_of(false));
+    if fixed.is_empty() || free.is_empty() {
         return None;
     }
-    let is_even = free.imbalance.map(|imbalance| imbalance < EVEN);
-    if let Some(ratio) = section.slower(fixed, free) {
-        let uneven = free.imbalance.filter(|_| is_even == Some(false));
+    let (fixed, free) = (median_times(&fixed), median_times(&free));
+    let is_even = first.imbalance.map(|imbalance| imbalance < EVEN_IMBALANCE);
+    if let Some(ratio) = section.longer(&fixed, &free) {
+        let uneven = first.imbalance.filter(|_| is_even == Some(false));
         let why = uneven.map(|imbalance| {
-            let (threads, share) =
-                (section.threads as f64, imbalance * 100.0 / section.threads as f64);
-            if section.threads == 2 {
-                format!(": the dearer half of this image has {share:.0} % of its cost")
-            } else {
-                format!(
-                    ": the dearest of {threads} shares of this image has {share:.0} % of its cost"
-                )
-            }
+            let share = imbalance * 100.0 / section.threads as f64;
+            let which = match section.threads {
+                2 => "more expensive half".to_owned(),
+                threads => format!("most expensive of {threads} shares"),
+            };
+            format!(", because the {which} of this image has {share:.0} % of its cost")
         });
         return Some(format!(
-            "Deal out at run time: equal shares, fixed beforehand, take {} longer here{}.",
-            longer(ratio.median),
+            "Schedule at run time: equal shares take {} % longer here{}.",
+            percent_longer(ratio.median),
             why.unwrap_or_default()
         ));
     }
-    let even = "this image's cost is even";
-    if let Some(ratio) = section.slower(free, fixed) {
-        let why = if is_even == Some(true) { format!(": {even}") } else { String::new() };
+    if let Some(ratio) = section.longer(&free, &fixed) {
+        let why = if is_even == Some(true) { ", because this image's cost is even" } else { "" };
         return Some(format!(
-            "Equal shares do better here, dealing out at run time takes {} longer{why}.",
-            longer(ratio.median)
+            "Equal shares are faster here: scheduling at run time takes {} % longer{why}.",
+            percent_longer(ratio.median)
         ));
     }
-    (is_even == Some(true)).then(|| format!("Equal shares do as well here: {even}."))
+    (is_even == Some(true)).then(|| {
+        "No difference is seen between equal shares and scheduling at run time: this image's cost \
+         is even."
+            .to_owned()
+    })
+}
+
+/// Returns the median time of the rows in each round.
+fn median_times(rows: &[&Record]) -> Vec<u64> {
+    let rounds = rows.iter().map(|row| row.measurement.samples_ns.len()).min().unwrap_or(0);
+    let time = |round| {
+        let times: Vec<f64> =
+            rows.iter().map(|row| row.measurement.samples_ns[round] as f64).collect();
+        median(&times).map(|time| time as u64)
+    };
+    (0..rounds).filter_map(time).collect()
 }
 
 /// Returns whether it matters how a free thread gets its next piece.
@@ -118,28 +131,29 @@ fn dispatch(section: &Section<'_>) -> Option<String> {
     if ways.len() < 2 {
         return None;
     }
-    let (alike, behind) = rank(&rows, section.trust);
+    let (alike, behind) = rank(&rows, section.control_error);
     let Some(most) = behind.iter().map(|(_, ratio)| ratio.median).reduce(f64::max) else {
         let ways: Vec<&str> = ways.iter().map(|(name, _)| *name).collect();
         return Some(format!(
-            "How the next piece is taken ({}) makes no difference to be seen here.",
+            "How the next piece is taken ({}) makes no visible difference here.",
             ways.join(", ")
         ));
     };
     let slower: Vec<&Record> = behind.iter().map(|(row, _)| *row).collect();
     let (verb, most) = match slower.len() {
-        1 => ("takes", longer(most)),
-        _ => ("take", format!("up to {}", longer(most))),
+        1 => ("takes", percent_longer(most)),
+        _ => ("take", format!("up to {}", percent_longer(most))),
     };
     let rest = if alike.len() > 1 { "; between the others no difference is seen" } else { "" };
     Some(format!(
-        "Among those dealt out at run time {} {verb} {most} longer than {}{rest}.",
+        "Among the strategies that schedule at run time, {} {verb} {most} % longer than {}{rest}.",
         names(&slower),
         first.measurement.strategy
     ))
 }
 
-/// Returns what a lock for each row and for each pixel costs.
+/// Returns the cost of a lock for each row, against rows or bands without one, and the cost of
+/// single pixels with locks against rows with locks.
 fn locks(section: &Section<'_>) -> Option<String> {
     let best = |output: Output, kinds: &[Granularity]| {
         section.rows.iter().copied().find(|row| {
@@ -149,30 +163,33 @@ fn locks(section: &Section<'_>) -> Option<String> {
                 && kinds.iter().any(|kind| kind.to_string() == *granularity)
         })
     };
-    let free = best(Output::InPlace, &[Granularity::Row, Granularity::Band]);
-    let row = best(Output::Mutex, &[Granularity::Row]);
-    let pixel = best(Output::Mutex, &[Granularity::Pixel]);
-    let cost = |locked: Option<&Record>, than: Option<&Record>| {
-        let (locked, than) = locked.zip(than).filter(|(a, b)| is_same_work(a, b))?;
-        Some(match section.slower(locked, than) {
-            None => "costs nothing to be seen".to_owned(),
-            Some(ratio) => {
-                let (locked, than) = (&locked.measurement.strategy, &than.measurement.strategy);
-                format!("costs {} ({locked} against {than})", longer(ratio.median))
-            }
-        })
-    };
-    match (cost(row, free), cost(pixel, row.or(free))) {
-        (None, None) => None,
-        (Some(row), None) => Some(format!("A lock a row {row} here.")),
-        (None, Some(pixel)) => Some(format!("A lock a pixel {pixel} here.")),
-        (Some(row), Some(pixel)) if row == pixel => {
-            Some(format!("A lock a row or a pixel {row} here."))
-        }
-        (Some(row), Some(pixel)) => {
-            Some(format!("A lock a row {row} here; a lock a pixel {pixel}."))
-        }
+    let rows = best(Output::Mutex, &[Granularity::Row])?;
+    let same_work = |other: &&Record| is_same_work(other, rows);
+    let free = best(Output::InPlace, &[Granularity::Row, Granularity::Band]).filter(same_work);
+    let pixels = best(Output::Mutex, &[Granularity::Pixel]).filter(same_work);
+    let cost = free.and_then(|free| row_lock(section, rows, free));
+    let pixels = pixels.and_then(|pixels| section.slower(pixels, rows)).map(|ratio| {
+        let percent = percent_longer(ratio.median);
+        format!(
+            "Single pixels with a lock each take {percent} % longer than rows with a lock each."
+        )
+    });
+    let lessons: Vec<String> = cost.into_iter().chain(pixels).collect();
+    (!lessons.is_empty()).then(|| lessons.join(" "))
+}
+
+/// Returns the cost of a lock for each row, or its upper limit if none is seen.
+fn row_lock(section: &Section<'_>, locked: &Record, free: &Record) -> Option<String> {
+    if let Some(ratio) = section.slower(locked, free) {
+        let percent = percent_longer(ratio.median);
+        let (locked, free) = (&locked.measurement.strategy, &free.measurement.strategy);
+        return Some(format!("One lock per row costs {percent} % here ({locked} against {free})."));
     }
+    let ratio = ratio_interval(&locked.measurement.samples_ns, &free.measurement.samples_ns)?;
+    let limit = section.control_error.max(ratio.high - 1.0);
+    (limit <= LARGEST_ERROR).then(|| {
+        format!("One lock per row has no visible cost here (below {}).", percent_up(limit))
+    })
 }
 
 /// Returns whether two rows traced the same number of rays in the same number of packets.

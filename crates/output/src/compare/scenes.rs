@@ -1,8 +1,9 @@
 //! The list as one table with a column for each scene, and a sentence for each scene on which
 //! strategy wins and why.
 
-use super::lessons::EVEN;
-use super::{Record, Results, changes, markdown, scene_name, screen};
+use super::lessons::EVEN_IMBALANCE;
+use super::ranking::Section;
+use super::{Record, Results, changes, markdown, scene_name, screen, verdict};
 use crate::machine;
 use crate::style::{self, clipped, wrapped};
 use rayweave_contract::{Granularity, Scheduling};
@@ -54,7 +55,7 @@ pub(super) fn first_screen(results: &Results) -> Vec<String> {
         lines.push(style::table(header, rows, 1..=groups.len()));
         lines.push(String::new());
     }
-    lines.extend(groups.first().map(|group| screen::work(&group[0].subject)));
+    lines.extend(groups.first().map(|group| screen::work_sentence(&group[0].subject)));
     lines.extend(doubts(results, &groups).iter().map(|line| wrapped(line, "")));
     lines
 }
@@ -135,40 +136,23 @@ fn best(group: &[Record], which: impl Fn(&Record) -> bool) -> Option<&Record> {
     records.max_by(|a, b| median(a).unwrap_or_default().total_cmp(&median(b).unwrap_or_default()))
 }
 
-/// Returns the winner of a scene, and the property of the cost that makes the difference.
+/// Returns the sentences on which strategies are fastest on a scene, and one on the properties of
+/// the cost that make the difference.
 fn why(group: &[Record]) -> String {
-    let name = scene_name(&group[0]);
-    let speedup = |record: &Record| record.measurement.speedup;
-    let Some((winner, won)) = winner(group).and_then(|record| Some((record, speedup(record)?)))
-    else {
-        return format!("{name}: nothing was measured.");
-    };
-    let others = || group.iter().filter(|record| !record.measurement.control);
-    let as_good =
-        others().filter(|row| speedup(row).is_some_and(|other| other.high >= won.low)).count() - 1;
-    let certain = others().filter(|row| speedup(row).is_some_and(|other| other.low > 1.0));
-    let certain: Vec<&str> = certain.map(|row| &*row.measurement.strategy).collect();
-    let strategy = &winner.measurement.strategy;
-    let verdict = if std::ptr::eq(winner, &raw const group[0]) {
-        format!("no strategy pays off, {strategy} is fastest")
-    } else if certain.is_empty() {
-        format!("no strategy is certainly faster than one thread; {strategy} has the best median")
-    } else if won.low <= 1.0 {
-        let certain = certain.join(", ");
-        format!("{strategy} has the best median; certainly faster than one thread: {certain}")
-    } else {
-        let scheduling = scheduling(&winner.measurement.scheduling);
-        format!("{strategy} ({scheduling}) is fastest; {as_good} others overlap its interval")
-    };
-    let mut parts = vec![format!("{name}: {verdict}")];
-    parts.extend(cost(group));
+    let mut sentences = verdict::sentences(group, &Section::all(group));
+    let mut parts = cost(group);
     if let Some(ns) = group[0].measurement.median_ns.filter(|&ns| ns < FREE_NS) {
         parts.push(format!(
             "the whole image takes {:.2} ms, so starting threads and scheduling matter",
             ns as f64 / 1e6
         ));
     }
-    parts.join("; ") + "."
+    let cost = parts.join("; ");
+    let mut letters = cost.chars();
+    sentences.extend(
+        letters.next().map(|first| format!("{}{}.", first.to_uppercase(), letters.as_str())),
+    );
+    format!("{}: {}", scene_name(&group[0]), sentences.join(" "))
 }
 
 /// Returns the limits that the cost of the tiles sets to the largest number of threads.
@@ -187,7 +171,7 @@ fn cost(group: &[Record]) -> Vec<String> {
         let measured =
             equal.map(|equal| format!(" (measured: {:.2})", equal.median)).unwrap_or_default();
         let most = threads as f64 / imbalance;
-        parts.push(if imbalance < EVEN {
+        parts.push(if imbalance < EVEN_IMBALANCE {
             let percent = (imbalance - 1.0) * 100.0;
             format!("the cost is even: equal shares of tiles differ by {percent:.0} %")
         } else {
@@ -205,17 +189,6 @@ fn cost(group: &[Record]) -> Vec<String> {
         ));
     }
     parts
-}
-
-/// Returns in words how pieces are scheduled.
-fn scheduling(word: &str) -> &'static str {
-    match word {
-        "static" => "equal shares",
-        "guided" => "shrinking chunks to free threads",
-        "work-stealing" => "equal shares; idle threads steal half of another's",
-        "recursive-split" => "halves of the range to idle threads",
-        _ => "the next piece to a free thread",
-    }
 }
 
 #[cfg(test)]
@@ -263,36 +236,38 @@ mod tests {
         );
         assert_eq!(
             line("even:"),
-            "even: pool (equal shares) is fastest; 0 others overlap its interval; the cost is \
-             even: equal shares of tiles differ by 0 %."
+            "even: Fastest on 9000 threads: pool, 1.9 times as fast as one thread. On 2 threads no \
+             strategy gave figures to compare. The cost is even: equal shares of tiles differ by \
+             0 %."
         );
         assert_eq!(line("INTERRUPTED"), "INTERRUPTED before it was measured: later.toml.");
         // With one tile more than 9000 threads the first range is the costly tile alone: 3/4 of
         // the cost.
         assert_eq!(
             line("corner:"),
-            "corner: no strategy pays off, sequential is fastest; with equal shares of \
-             tiles the busiest thread has 6750.00 times the mean cost, so at most 1.33 (measured: \
-             0.90); one tile has 75 % of the cost, so whole tiles allow at most 1.33; the whole \
-             image takes 5.00 ms, so starting threads and scheduling matter."
+            "corner: On 9000 threads no strategy is seen to be faster than the plain loop on one \
+             thread; the highest median is pool, 0.90 (0.85-0.95). On 2 threads no strategy gave \
+             figures to compare. With equal shares of tiles the busiest thread has 6750.00 times \
+             the mean cost, so at most 1.33 (measured: 0.90); one tile has 75 % of the cost, so \
+             whole tiles allow at most 1.33; the whole image takes 5.00 ms, so starting threads \
+             and scheduling matter."
         );
     }
 
-    /// Catches a winner that may be slower than a single thread.
+    /// Catches another rule than that of a single scene: overlapping intervals do not mean that two
+    /// rows cannot be told apart, because a slow round slows both.
     #[test]
-    fn a_lead_within_the_interval_is_none() {
-        let mut group = records();
-        group[2].measurement.speedup = Some(Interval { median: 1.2, low: 0.9, high: 1.6 });
-        let told = why(&group);
-        let expected =
-            ": no strategy is certainly faster than one thread; pool has the best median.";
-        assert!(told.ends_with(expected), "{told}");
-
-        // Another is, though its median is lower.
-        group[3].measurement.speedup = Some(Interval { median: 1.1, low: 1.05, high: 1.2 });
-        let told = why(&group);
-        let expected = ": pool has the best median; certainly faster than one thread: queue.";
-        assert!(told.ends_with(expected), "{told}");
+    fn scenes_are_ranked_like_a_single_one() {
+        let mut results = two_scenes();
+        let mut slower = results.results[2].clone();
+        slower.measurement.strategy = "slower".to_owned();
+        slower.measurement.samples_ns = vec![1_200_000_000; 2];
+        results.results.insert(3, slower);
+        for text in [results.table(&[]), results.screen(&[]).replace("\n  ", " ")] {
+            let expected = "even: Fastest on 9000 threads: pool, 1.9 times as fast as one thread; \
+                            slower takes 17 % longer.";
+            assert!(text.contains(expected), "{text}");
+        }
     }
 
     #[test]

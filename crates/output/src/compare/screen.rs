@@ -1,10 +1,12 @@
 //! The list as the first screen: a sentence, what was measured, a bar a row, what the figures
 //! teach, and which differences to trust. No line is longer than 80 columns.
 
-use super::lessons::{self, samples_are_shared};
-use super::ranking::{Section, distance_from_1, is_static, rank, speedup};
-use super::table::{TELLING, computed, goal_line, milliseconds, reference};
-use super::{Record, Results, Subject, changes, complaint, control, scenes, short};
+use super::lessons;
+use super::ranking::{Section, is_static, rank};
+use super::table::{computed, goal_line, milliseconds, rays_each, reference};
+use super::verdict::{sentences, threads, trust};
+use super::{BUILT_IN_SCENE, Record, Results, Subject, changes, complaint, control, scene_file};
+use super::{scenes, short};
 use crate::style::{self, WIDTH, clipped, wrapped};
 use crate::{machine, noise};
 use rayweave_contract::{Granularity, Output};
@@ -49,13 +51,7 @@ fn subjects(results: &Results) -> Vec<String> {
             let samples = if group[0].subject.share_samples { "shared" } else { "not shared" };
             lines.push(format!("Samples {samples}."));
         }
-        lines.extend(sections.iter().map(|section| wrapped(&sentence(section), "")));
-        if sections.iter().any(|section| !section.is_certain()) {
-            lines.push("The figures are too uncertain to rely on, see below.".to_owned());
-        }
-        if sections.is_empty() {
-            lines.push(format!("Only {} was measured, so nothing is compared.", reference(group)));
-        }
+        lines.extend(sentences(group, &sections).iter().map(|line| wrapped(line, "")));
         lines.extend([String::new(), wrapped(&measured(group), ""), String::new()]);
         for section in &sections {
             lines.extend((sections.len() > 1).then(|| format!("On {}:", threads(section.threads))));
@@ -94,94 +90,20 @@ fn subjects(results: &Results) -> Vec<String> {
     lines
 }
 
-/// Returns the sentence on which strategies are fastest.
-fn sentence(section: &Section<'_>) -> String {
-    let on = threads(section.threads);
-    let (alike, behind) = section.ranked();
-    let Some(&best) = alike.first() else {
-        return format!("On {on} no strategy gave figures to compare.");
-    };
-    let name = &best.measurement.strategy;
-    if section.threads == 1 {
-        let range = range(&section.rows);
-        return format!(
-            "On {on} nothing is to be gained: {range} times as fast as the plain loop."
-        );
-    }
-    if !section.pays_off() {
-        return format!(
-            "On {on} no strategy is seen to be faster than the plain loop on one thread: the best, \
-             {name}, is {:.2} times as fast.",
-            speedup(best)
-        );
-    }
-    let times = range(&alike);
-    let times = format!("{times} times as fast as one thread");
-    let others = match &behind[..] {
-        [] => String::new(),
-        [(record, ratio)] => {
-            format!("; {} takes {} longer", record.measurement.strategy, longer(ratio.median))
-        }
-        several => {
-            let least = several.iter().map(|(_, ratio)| ratio.median).fold(f64::MAX, f64::min);
-            format!("; the others take at least {} longer", longer(least))
-        }
-    };
-    match (alike.len(), behind.len() + section.failed.len()) {
-        (1, 0) => format!("On {on} {name} is {times}."),
-        (1, _) => format!("Fastest on {on}: {name}, {times}{others}."),
-        (all, 0) => {
-            format!("On {on} no difference is seen between the {all} strategies: they are {times}.")
-        }
-        _ => format!(
-            "Fastest on {on}: {}, which cannot be told apart: {times}{others}.",
-            names(&alike)
-        ),
-    }
-}
-
-/// Returns the speed-ups of rows, the fastest first.
-fn range(rows: &[&Record]) -> String {
-    let ends = [rows.last(), rows.first()].map(|row| row.map_or(0.0, |row| speedup(row)));
-    let [least, most] = ends.map(|speedup| format!("{speedup:.1}"));
-    if most == least { most } else { format!("{least} to {most}") }
-}
-
-/// Returns up to three names; of more rows, two names and the number of the others.
-pub(super) fn names(rows: &[&Record]) -> String {
-    let names: Vec<&str> = rows.iter().map(|row| &*row.measurement.strategy).collect();
-    match &names[..] {
-        [] => String::new(),
-        [one] => (*one).to_owned(),
-        [one, two] => format!("{one} and {two}"),
-        [one, two, three] => format!("{one}, {two} and {three}"),
-        [one, two, others @ ..] => format!("{one}, {two} and {} others", others.len()),
-    }
-}
-
-/// Returns by how much a time is longer, given its ratio.
-pub(super) fn longer(ratio: f64) -> String {
-    format!("{:.0} %", (ratio - 1.0) * 100.0)
-}
-
-fn threads(threads: usize) -> String {
-    if threads == 1 { "1 thread".to_owned() } else { format!("{threads} threads") }
-}
-
 /// Returns what was measured: image, number of strategies, time of the reference, and rounds.
 fn measured(group: &[Record]) -> String {
     let Record { subject, rounds, interrupted, reference_digest, .. } = &group[0];
-    let rays = match (u64::from(subject.antialiasing), &*subject.sampling) {
-        (0, _) => "one ray each".to_owned(),
-        (n, "lattice") if subject.adaptive => format!("up to {} rays each", (2 * n + 1).pow(2)),
-        (n, "lattice") => format!("{} rays each", (2 * n + 1).pow(2)),
-        (n, _) => format!("{} rays each", n * n + (n + 1) * (n + 1)),
+    let scene = match &*subject.scene {
+        BUILT_IN_SCENE => "The lab report's scene",
+        path => scene_file(path),
     };
-    let ways: BTreeSet<&str> = group.iter().map(|record| &*record.measurement.strategy).collect();
+    let strategies: BTreeSet<&str> =
+        group.iter().map(|record| &*record.measurement.strategy).collect();
+    let plural = if strategies.len() == 1 { "strategy" } else { "strategies" };
     let bits = if group.iter().all(|record| record.measurement.passed()) {
-        "all gave the same bits"
+        "all with the same bits"
     } else {
-        "NOT all gave it, see below"
+        "NOT all with the same bits, see below"
     };
     let alone = group[0]
         .measurement
@@ -189,21 +111,20 @@ fn measured(group: &[Record]) -> String {
         .map(|ns| format!(" One thread takes {} ms;", milliseconds(ns)));
     let rounds = format!("{}{rounds} rounds", if *interrupted { "interrupted after " } else { "" });
     format!(
-        "One image ({}, {} x {} pixels, {rays}), {} ways to compute it: {bits} (digest {}).{} \
-         {rounds}. {work}",
-        subject.scene,
+        "{scene}, {} x {} pixels with {}; {} {plural}, {bits} (digest {}).{} {rounds}. {work}",
         subject.width,
         subject.height,
-        ways.len(),
+        rays_each(subject),
+        strategies.len(),
         short(reference_digest),
         alone.unwrap_or_default(),
-        work = work(subject)
+        work = work_sentence(subject)
     )
 }
 
 /// Returns a sentence that says whether only threading differs.
-pub(super) fn work(subject: &Subject) -> String {
-    if subject.lanes == 1 && !samples_are_shared(subject) {
+pub(super) fn work_sentence(subject: &Subject) -> String {
+    if subject.lanes == 1 && !subject.shares_samples() {
         return "Equal work: each traces the same rays, one by one.".to_owned();
     }
     format!("Not equal work: {}.", computed(subject).trim_start_matches("computed: "))
@@ -220,7 +141,7 @@ fn chart(section: &Section<'_>, available: usize) -> Vec<String> {
     let mut lines =
         vec![format!("{:width$}   0{middle:>10}{scale:>10}  speed-up, 95 % interval", "")];
     for (is_fixed, heading) in
-        [(false, "whoever is free takes the next piece"), (true, "equal shares, fixed beforehand")]
+        [(false, "scheduled while running"), (true, "equal shares, fixed beforehand")]
     {
         let rows: Vec<&Record> =
             section.rows.iter().copied().filter(|row| is_static(row) == is_fixed).collect();
@@ -230,17 +151,21 @@ fn chart(section: &Section<'_>, available: usize) -> Vec<String> {
             continue;
         }
         lines.push(heading.to_owned());
-        let (_, behind) = rank(&rows, section.trust);
+        let (alike, behind) = rank(&rows, section.control_error);
         for row in &rows {
             let Some(Interval { median, low, high }) = row.measurement.speedup else { continue };
             let bar = (median / scale as f64 * BAR as f64).round().clamp(0.0, BAR as f64) as usize;
             // The heading is why a row loses to the other group.
-            let loses = behind.iter().any(|(slower, _)| std::ptr::eq(*slower, *row));
+            let loses = section.is_certain()
+                && behind.iter().any(|(slower, _)| std::ptr::eq(*slower, *row));
             let reason = if loses { reason(row, rows[0]) } else { String::new() };
             let (name, bar) = (clipped(&row.measurement.strategy, width), "=".repeat(bar));
             let line =
                 format!("  {name:width$} {bar:BAR$} {median:>5.2}  {low:.2}-{high:.2}   {reason}");
             lines.push(clipped(line.trim_end(), WIDTH));
+        }
+        if section.is_certain() {
+            lines.extend(tile_note(&alike, &behind));
         }
         for row in &failed {
             let name = clipped(&row.measurement.strategy, width);
@@ -275,31 +200,20 @@ fn reason(record: &Record, best: &Record) -> String {
     }
     let (mutex, channel) = (Output::Mutex.to_string(), Output::Channel.to_string());
     if row.output == mutex {
-        return format!("a lock a {}", row.granularity);
+        return format!("{}s, a lock each", row.granularity);
     }
     if row.output == channel {
         return format!("copies each {}", row.granularity);
     }
-    match record.largest_tile {
-        Some(share)
-            if row.granularity == Granularity::Tile.to_string()
-                && share * row.threads as f64 > 1.0 =>
-        {
-            format!("a tile has {:.0} %", share * 100.0)
-        }
-        _ => String::new(),
-    }
+    String::new()
 }
 
-/// Returns which differences to trust, by the reference's time over its own.
-fn trust(control: Interval) -> String {
-    let far = distance_from_1(control);
-    let range = format!("{:.2}-{:.2}", control.low, control.high);
-    if !control.contains(1.0) {
-        return format!("One thread against itself is {range}, which is not 1: measure again.");
-    }
-    let advice =
-        if far > TELLING { " Measure longer (--time-limit) or on a quieter machine." } else { "" };
-    let percent = (far * 100.0).ceil().max(1.0);
-    format!("Trust differences above {percent:.0} % (one thread against itself: {range}).{advice}")
+/// Returns a line on the most expensive tile, if it may be why the rows with tiles are behind.
+fn tile_note(alike: &[&Record], behind: &[(&Record, Interval)]) -> Option<String> {
+    let has_tiles = |row: &&Record| row.measurement.granularity == Granularity::Tile.to_string();
+    let slower = behind.iter().map(|(row, _)| *row).find(has_tiles)?;
+    let share = slower.largest_tile?;
+    let is_limit = share * slower.measurement.threads as f64 > 1.0;
+    (is_limit && !alike.iter().any(has_tiles))
+        .then(|| format!("  tiles: one tile has {:.0} % of the cost", share * 100.0))
 }

@@ -1,8 +1,9 @@
 //! The list as a table for people, one for each subject.
 
+use super::verdict::trust;
 use super::{Record, Results, Subject, changes, control, short};
 use crate::{machine, noise, style};
-use rayweave_measure::{Interval, Measurement};
+use rayweave_measure::Measurement;
 
 /// A column of the table.
 struct Column {
@@ -65,9 +66,6 @@ pub fn column_names() -> impl Iterator<Item = &'static str> {
     COLUMNS.iter().map(|column| column.name)
 }
 
-/// The distance from 1 that the control's interval may reach before the table warns.
-pub(super) const TELLING: f64 = 0.05;
-
 /// The cell without a figure.
 const NONE: &str = "-";
 
@@ -81,7 +79,7 @@ pub(super) fn text(results: &Results, names: &[String]) -> String {
     let mut lines: Vec<String> = Vec::new();
     for group in results.groups() {
         lines.extend(measured(group, &columns));
-        lines.extend(control(group).map(|interval| control_line(group, interval)));
+        lines.extend(control(group).map(trust));
         lines.extend(results.precision_goal.map(|goal| goal_line(group, goal)));
         lines.push(String::new());
     }
@@ -115,23 +113,30 @@ fn measured(group: &[Record], columns: &[&Column]) -> Vec<String> {
 
 pub(super) fn heading(group: &[Record]) -> String {
     let Record { subject, rounds, interrupted, reference_digest, .. } = &group[0];
-    let rays = match (subject.antialiasing, &*subject.sampling) {
-        (0, _) => "one ray a pixel".to_owned(),
-        (density, "lattice") if subject.adaptive => format!("antialiasing {density} (adaptive)"),
-        (density, "lattice") => format!("antialiasing {density}"),
-        (density, sampling) => format!("antialiasing {density} by {sampling}"),
-    };
     let interrupted = if *interrupted { "interrupted after " } else { "" };
     format!(
-        "{}, {} x {} pixels, {rays}, {}, tiles of {}; {interrupted}{rounds} interleaved rounds, \
-         digest {}",
+        "{}, {} x {} pixels, {}, {}, tiles of {}; {interrupted}{rounds} interleaved rounds, digest \
+         {}",
         subject.scene,
         subject.width,
         subject.height,
+        rays_each(subject),
         subject.precision,
         subject.tile,
         short(reference_digest)
     )
+}
+
+/// Returns the number of rays for a pixel, and how it is chosen.
+pub(super) fn rays_each(subject: &Subject) -> String {
+    let density = u64::from(subject.antialiasing);
+    let lattice = (2 * density + 1).pow(2);
+    match (density, &*subject.sampling) {
+        (0, _) => "one ray each".to_owned(),
+        (_, "lattice") if subject.adaptive => format!("up to {lattice} rays each"),
+        (_, "lattice") => format!("{lattice} rays each"),
+        (n, sampling) => format!("{} rays each by {sampling}", n * n + (n + 1) * (n + 1)),
+    }
 }
 
 fn percent(share: f64) -> String {
@@ -165,11 +170,11 @@ pub(super) fn computed(subject: &Subject) -> String {
         1 => "rays one by one".to_owned(),
         lanes => format!("{lanes} rays side by side"),
     };
-    let samples = match (subject.antialiasing, &*subject.sampling) {
-        (0, _) | (_, "importance") => "no samples to share",
-        _ if subject.adaptive => "samples shared or interpolated",
-        _ if subject.share_samples => "samples shared",
-        _ => "samples not shared",
+    let samples = match (subject.has_lattice(), subject.shares_samples()) {
+        (false, _) => "no samples to share",
+        (true, true) if subject.adaptive => "samples shared or interpolated",
+        (true, true) => "samples shared",
+        (true, false) => "samples not shared",
     };
     let accel = match (&*subject.formulas, &*subject.accel) {
         ("textbook", "auto") => "none (the textbook formulas allow no other)",
@@ -212,35 +217,6 @@ fn legend(records: &[Record]) -> [String; 5] {
     ]
 }
 
-/// Returns what the control says of the table.
-fn control_line(group: &[Record], control: Interval) -> String {
-    let reference = reference(group);
-    let far = (control.high - 1.0).max(1.0 - control.low);
-    let (wide, percent) = (far > TELLING, far * 100.0);
-    let verdict = match (control.contains(1.0), wide) {
-        (true, false) => "contains 1, as it should.".to_owned(),
-        (true, true) => format!("contains 1, but reaches {percent:.0} % from it."),
-        (false, _) => "does not contain 1: measure again.\n\
-                       On a quiet machine at most one run in twenty does this by chance."
-            .to_owned(),
-    };
-    let note = if wide {
-        format!(
-            "\nDo not trust differences between rows below {percent:.0} %: measure longer \
-             (--time-limit,\n--precision-goal) or on a quieter machine."
-        )
-    } else if control.contains(1.0) {
-        "\nIt shows order and drift on one thread. To tell rows apart, compare their own intervals."
-            .to_owned()
-    } else {
-        String::new()
-    };
-    format!(
-        "control: {reference} over itself is {}, which {verdict}{note}",
-        style::precise_interval(control)
-    )
-}
-
 /// Returns whether the rows are as precise as was asked for.
 pub(super) fn goal_line(group: &[Record], goal: f64) -> String {
     let speedups = group.iter().filter_map(|record| record.measurement.speedup);
@@ -259,43 +235,4 @@ pub(super) fn goal_line(group: &[Record], goal: f64) -> String {
 
 pub(super) fn reference(group: &[Record]) -> &str {
     group.first().map_or("the reference", |record| &record.measurement.strategy)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::fixtures::results;
-    use super::*;
-
-    /// Catches a control that reassures although its interval is wide.
-    #[test]
-    fn a_control_says_which_differences_to_trust() {
-        let results = results();
-        let told =
-            |median, low, high| control_line(&results.results, Interval { median, low, high });
-        let distrust = |percent: u32| {
-            format!(
-                "\nDo not trust differences between rows below {percent} %: measure longer \
-                 (--time-limit,\n--precision-goal) or on a quieter machine."
-            )
-        };
-        let again = "does not contain 1: measure again.\n\
-                     On a quiet machine at most one run in twenty does this by chance.";
-        let good = "contains 1, as it should.\n\
-                    It shows order and drift on one thread. \
-                    To tell rows apart, compare their own intervals.";
-        for ((median, low, high), interval, expected) in [
-            ((1.0, 0.951, 1.049), "1.000 [0.951, 1.049]", good.to_owned()),
-            ((0.97, 0.952, 0.98), "0.970 [0.952, 0.980]", again.to_owned()),
-            (
-                (1.0, 0.939, 1.11),
-                "1.000 [0.939, 1.110]",
-                "contains 1, but reaches 11 % from it.".to_owned() + &distrust(11),
-            ),
-            ((0.8, 0.7, 0.91), "0.800 [0.700, 0.910]", again.to_owned() + &distrust(30)),
-        ] {
-            let expected =
-                format!("control: sequential over itself is {interval}, which {expected}");
-            assert_eq!(told(median, low, high), expected);
-        }
-    }
 }
