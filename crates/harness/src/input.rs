@@ -6,13 +6,14 @@ use rayweave_contract::{Image, ImageError, Work};
 use rayweave_core::precision::PrecisionEstimate;
 use rayweave_core::scene::RenderSettings;
 use rayweave_core::{Arithmetic, Execution, Lanes, Precision, Sampling, Scene, tracer};
+use rayweave_output::compare::BUILT_IN_SCENE;
 use rayweave_scene_file::{self as scene_file, SceneFile};
 use std::path::Path;
 
 /// Loads the scene at `path`, or the lab report's. Returns its name in results, too.
 pub fn load(path: Option<&Path>) -> Result<(String, SceneFile), String> {
     let Some(path) = path else {
-        return Ok(("report (built in)".to_owned(), scene_file::report_scene()));
+        return Ok((BUILT_IN_SCENE.to_owned(), scene_file::report_scene()));
     };
     let file = scene_file::load(path).map_err(|e| e.to_string())?;
     claim(path, Use::Read)?;
@@ -50,7 +51,7 @@ pub struct Input {
 impl Input {
     /// Loads the scene at `path`, or the lab report's.
     pub fn load(path: Option<&Path>, options: &SceneOptions) -> Result<Self, String> {
-        let share_samples = options.share_samples()?;
+        let share_samples = options.only_way_to_share()?;
         Self::load_sharing(path, options, share_samples)
     }
 

@@ -8,6 +8,7 @@ use rayweave_core::{Acceleration, Formulas, Lanes, Sampling};
 use rayweave_registry::STRATEGIES;
 use serde::{Deserialize, Serialize};
 use std::num::{NonZeroU32, NonZeroUsize};
+use std::path::Path;
 use std::thread::available_parallelism;
 use std::time::Duration;
 
@@ -23,8 +24,7 @@ const MAX_TILES: u64 = 1 << 24;
 /// The options that choose the image and its computation.
 #[derive(Args, Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct SceneOptions {
-    /// Size of the image in pixels, each 1..=65535 [default: the scene's; 250x250 where
-    /// `compare` gets no scene file]
+    /// Size of the image in pixels, each 1..=65535 [default: the scene's]
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub size: Option<(u32, u32)>,
     /// Density of samples: 0 is one ray a pixel; N is (2 N + 1)^2 rays on the lattice, or
@@ -60,14 +60,24 @@ pub struct SceneOptions {
     pub accel: AccelerationOption,
 }
 
-/// The option of the commands that compare threading.
+/// The size of the built-in scene's image where strategies are compared: with all of them, two
+/// threads compute the default rounds of it in a minute.
+const BUILT_IN_SIZE: (u32, u32) = (250, 250);
+
+/// The options of the commands that compare threading.
 #[derive(Args)]
-pub struct WorkOption {
+#[command(mut_arg("size", |size| size.help(
+    "Size of the image in pixels, each 1..=65535 [default: the scene's; 250x250 for the built-in \
+     scene]"
+)))]
+pub struct WorkOptions {
     /// Give all strategies the same work, so that only threading differs: samples are not shared,
     /// and rays are followed one by one. --share-samples and --lanes each lift their part. Off:
     /// compute as `render` does
     #[arg(long, value_enum, default_value = "on")]
     equal_work: SwitchOption,
+    #[command(flatten)]
+    scene: SceneOptions,
 }
 
 /// The positions of the samples around a pixel.
@@ -190,16 +200,19 @@ impl From<AccelerationOption> for Acceleration {
     }
 }
 
-impl WorkOption {
-    /// Returns the options with the values that equal work gives to those not named.
-    pub fn applied_to(&self, options: &SceneOptions) -> SceneOptions {
+impl WorkOptions {
+    /// Returns the options of the scene at `path`, or of the built-in scene, those not named
+    /// resolved.
+    pub fn of_scene(&self, path: Option<&Path>) -> SceneOptions {
+        let size = self.scene.size.or(path.is_none().then_some(BUILT_IN_SIZE));
+        let options = SceneOptions { size, ..self.scene };
         if self.equal_work == SwitchOption::Off {
-            return *options;
+            return options;
         }
         SceneOptions {
             lanes: options.lanes.or(Some(LanesOption::One)),
             share_samples: options.share_samples.or(Some(SharingOption::Off)),
-            ..*options
+            ..options
         }
     }
 }
@@ -215,7 +228,7 @@ impl SceneOptions {
     }
 
     /// Returns whether to share samples, for commands that do not take `both`.
-    pub fn share_samples(&self) -> Result<bool, String> {
+    pub fn only_way_to_share(&self) -> Result<bool, String> {
         match self.ways_to_share() {
             [way] => Ok(*way),
             _ => {

@@ -82,15 +82,31 @@ fn the_work_is_equal_unless_options_say_otherwise() {
     assert_eq!((rays(""), rays("--equal-work off")), (64 * 9, 10 * 10));
 }
 
-/// Catches a default image that takes minutes, and a scene file whose own size is ignored.
+/// Catches a default image that takes minutes, a scene file whose own size is ignored, and an
+/// explanation of another image than the one that was compared.
 #[test]
-fn the_built_in_scene_is_compared_small() {
+fn the_built_in_scene_is_compared_explained_and_predicted_at_one_size() {
     let folder = folder();
-    let size = |file: &str| {
-        let fast = "--antialiasing 0 --strategy sequential --time-limit 1";
-        let (_, object) = rayweave_json(folder.path(), &format!("compare {file} {fast}"));
-        ["width", "height"].map(|key| object["results"][0][key].as_u64())
+    let size = |command: &str| {
+        let fast = "--antialiasing 0 --time-limit 1";
+        let (_, object) = rayweave_json(folder.path(), &format!("{command} {fast}"));
+        let measured = if command.starts_with("compare") { &object["results"][0] } else { &object };
+        ["width", "height"].map(|key| measured[key].as_u64())
     };
-    assert_eq!(size(""), [Some(250); 2]);
-    assert_eq!(size(&scene("lab.toml")), [Some(500); 2]);
+    let lab = scene("lab.toml");
+    for (command, strategy) in
+        [("compare", "sequential"), ("explain", "tile-queue"), ("predict", "tile-queue")]
+    {
+        let size = |file: &str| {
+            size(&format!("{command} {file} --strategy {strategy}").replace("  ", " "))
+        };
+        assert_eq!(size(""), [Some(250); 2], "{command}");
+        assert_eq!(size(&lab), [Some(500); 2], "{command}");
+        let help = rayweave(folder.path(), &format!("{command} --help")).expect_success();
+        assert!(help.contains("the scene's; 250x250 for the built-in scene"), "{help}");
+    }
+    let off = "compare --equal-work off --strategy sequential";
+    assert_eq!(size(off), [Some(250); 2], "equal work or not");
+    let help = rayweave(folder.path(), "render --help").expect_success();
+    assert!(help.contains("[default: the scene's]") && !help.contains("250x250"), "{help}");
 }

@@ -5,7 +5,7 @@ use crate::files::{PendingFile, distinct_files, named_twice};
 use crate::input::Input;
 use crate::interrupt::Interrupt;
 use crate::options::{
-    SceneOptions, SharingOption, TileOption, WorkOption, all_threads, chosen, distinct,
+    SceneOptions, SharingOption, TileOption, WorkOptions, all_threads, chosen, distinct,
     left_out_line, parse_percent, parse_seconds, parse_threads, strategy_parser,
 };
 use crate::progress::Share;
@@ -82,27 +82,15 @@ pub struct Options {
     )]
     columns: Vec<String>,
     #[command(flatten)]
-    work: WorkOption,
-    #[command(flatten)]
-    scene_options: SceneOptions,
+    work: WorkOptions,
 }
 
 impl Options {
-    /// Returns the options of a scene, those not named resolved.
-    fn of_scene(&self, path: Option<&Path>) -> SceneOptions {
-        let options = self.work.applied_to(&self.scene_options);
-        SceneOptions { size: options.size.or(path.is_none().then_some(SIZE)), ..options }
-    }
-
     /// Returns whether to share samples, for each way to compute the image.
     fn ways(&self) -> &'static [bool] {
-        self.work.applied_to(&self.scene_options).ways_to_share()
+        self.work.of_scene(None).ways_to_share()
     }
 }
-
-/// The size of the built-in scene's image: with all strategies, two threads compute the default
-/// rounds of it in a minute.
-const SIZE: (u32, u32) = (250, 250);
 
 /// The folder of `--scenes all`. Each of its scenes separates some strategies from others.
 const LOADS: &str = "scenes/loads";
@@ -245,7 +233,7 @@ struct Loaded {
 /// Loads a scene and checks that it can be measured with these options.
 fn load(path: Option<PathBuf>, options: &Options) -> Result<Loaded, String> {
     let (scene, ways) = (path.as_deref(), options.ways());
-    let input = Input::load_sharing(scene, &options.of_scene(scene), ways[0])?;
+    let input = Input::load_sharing(scene, &options.work.of_scene(scene), ways[0])?;
     let settings = &input.scene.render;
     if ways.len() > 1 && (!settings.has_lattice() || settings.adaptive) {
         return Err(
@@ -315,7 +303,7 @@ fn measure(
         let job = Job {
             parent: process::id(),
             scene: path.as_ref().map(Into::into),
-            options: SceneOptions { share_samples, ..options.of_scene(path.as_deref()) },
+            options: SceneOptions { share_samples, ..options.work.of_scene(path.as_deref()) },
             tile: *tile,
             strategy: String::new(),
             threads: NonZeroUsize::MIN,

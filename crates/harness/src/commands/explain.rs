@@ -5,8 +5,7 @@ use crate::files::{PendingFile, distinct_files};
 use crate::image_file::ImageFormat;
 use crate::input::Input;
 use crate::options::{
-    SceneOptions, TileOption, WorkOption, all_threads, distinct, parse_seconds, parse_threads,
-    strategy_parser,
+    TileOption, WorkOptions, all_threads, distinct, parse_seconds, parse_threads, strategy_parser,
 };
 use crate::with_noise::with_noise;
 use crate::{Outcome, print};
@@ -48,9 +47,7 @@ pub struct Arguments {
     #[arg(long, value_name = "FOLDER")]
     pictures: Option<PathBuf>,
     #[command(flatten)]
-    work: WorkOption,
-    #[command(flatten)]
-    options: SceneOptions,
+    work: WorkOptions,
 }
 
 /// The protocol for one strategy. A round has three renderings of it, one on a single thread.
@@ -67,8 +64,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let [json, trace] = [&arguments.json, &arguments.trace]
         .map(|path| path.as_deref().map(PendingFile::create).transpose());
     let (json, trace) = (json?, trace?);
-    let input =
-        Input::load(arguments.scene.as_deref(), &arguments.work.applied_to(&arguments.options))?;
+    let scene = arguments.scene.as_deref();
+    let input = Input::load(scene, &arguments.work.of_scene(scene))?;
     let (width, height) = input.recordable_size()?;
     let recommended = [rayweave_registry::recommended()];
     let strategies = distinct(

@@ -4,7 +4,7 @@ use crate::deliver;
 use crate::files::{PendingFile, distinct_files};
 use crate::input::Input;
 use crate::options::{
-    SceneOptions, TileOption, WorkOption, all_threads, chosen, parse_seconds, parse_thread_counts,
+    TileOption, WorkOptions, all_threads, chosen, parse_seconds, parse_thread_counts,
     strategy_parser,
 };
 use crate::with_noise::with_noise;
@@ -47,9 +47,7 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE")]
     svg: Option<PathBuf>,
     #[command(flatten)]
-    work: WorkOption,
-    #[command(flatten)]
-    options: SceneOptions,
+    work: WorkOptions,
 }
 
 /// The numbers of threads of one value in the list.
@@ -59,8 +57,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     distinct_files(&[&arguments.scene, &arguments.json, &arguments.svg])?;
     let json = arguments.json.as_deref().map(PendingFile::create).transpose()?;
     let svg = arguments.svg.as_deref().map(PendingFile::create).transpose()?;
-    let input =
-        Input::load(arguments.scene.as_deref(), &arguments.work.applied_to(&arguments.options))?;
+    let scene = arguments.scene.as_deref();
+    let input = Input::load(scene, &arguments.work.of_scene(scene))?;
     let (width, height) = input.recordable_size()?;
     let tile = arguments.tile.of(width, height)?;
     let strategies = chosen(&arguments.strategy);
