@@ -93,6 +93,10 @@ fn the_built_in_scene_is_compared_explained_and_predicted_at_one_size() {
         let measured = if command.starts_with("compare") { &object["results"][0] } else { &object };
         ["width", "height"].map(|key| measured[key].as_u64())
     };
+    let help = |command: &str| {
+        let text = rayweave(folder.path(), &format!("{command} --help")).expect_success();
+        text.split_whitespace().collect::<Vec<_>>().join(" ")
+    };
     let lab = scene("lab.toml");
     for (command, strategy) in
         [("compare", "sequential"), ("explain", "tile-queue"), ("predict", "tile-queue")]
@@ -102,11 +106,11 @@ fn the_built_in_scene_is_compared_explained_and_predicted_at_one_size() {
         };
         assert_eq!(size(""), [Some(250); 2], "{command}");
         assert_eq!(size(&lab), [Some(500); 2], "{command}");
-        let help = rayweave(folder.path(), &format!("{command} --help")).expect_success();
+        let help = help(command);
         assert!(help.contains("the scene's; 250x250 for the built-in scene"), "{help}");
     }
     let off = "compare --equal-work off --strategy sequential";
     assert_eq!(size(off), [Some(250); 2], "equal work or not");
-    let help = rayweave(folder.path(), "render --help").expect_success();
+    let help = help("render");
     assert!(help.contains("[default: the scene's]") && !help.contains("250x250"), "{help}");
 }

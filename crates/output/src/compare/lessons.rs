@@ -74,7 +74,9 @@ fn shares(section: &Section<'_>) -> Option<String> {
     let (fixed, free) = (median_times(&fixed), median_times(&free));
     let is_even = first.imbalance.map(|imbalance| imbalance < EVEN_IMBALANCE);
     if let Some(ratio) = section.longer(&fixed, &free) {
-        let uneven = first.imbalance.filter(|_| is_even == Some(false));
+        // The largest share makes equal shares take at most this many times as long.
+        let explains = |imbalance: &f64| is_even == Some(false) && ratio.low <= *imbalance;
+        let uneven = first.imbalance.filter(explains);
         let why = uneven.map(|imbalance| {
             let share = imbalance * 100.0 / section.threads as f64;
             let which = match section.threads {

@@ -127,7 +127,6 @@ fn the_sentence_names_the_fastest_and_those_like_it() {
     );
     one.results.pop();
     assert_eq!(first_sentence(&one), "On 1 thread halves is 2.00 times as fast as the plain loop.");
-
     // Without an image of the reference there are no figures.
     let mut broken = list(&[halves], 1.0);
     broken.results[2].measurement = failed(broken.results[2].measurement.clone(), "gone");
@@ -196,6 +195,7 @@ fn shares_fixed_beforehand_lose_where_the_cost_is_uneven() {
     let half = ", because the more expensive half of this image has 78 % of its cost.";
     assert_eq!(lesson(&[bands, halves], 1.56), [format!("{longer}{half}")]);
     assert_eq!(lesson(&[bands, halves], 1.05), [format!("{longer}.")], "another cause");
+    assert_eq!(lesson(&[bands, halves], 1.4), [format!("{longer}.")], "more than the cause");
     let as_well = ["No difference is seen between equal shares and scheduling at run time: this \
                     image's cost is even."];
     assert_eq!(lesson(&[even, halves], 1.05), as_well);
