@@ -92,8 +92,8 @@ pub(super) fn rank<'a>(
     (alike, behind)
 }
 
-/// Returns the ratio of two times, if the first is longer. It is one of several `comparisons`, which
-/// share the chance of an error (Bonferroni).
+/// Returns the ratio of two times, if the first is longer. It is one of several `comparisons`,
+/// which share the chance of an error (Bonferroni).
 fn longer(time: &[u64], than: &[u64], control_error: f64, comparisons: usize) -> Option<Interval> {
     let level = 1.0 - ERROR / comparisons.max(1) as f64;
     let ratio = ratio_interval_of_level(time, than, level)?;

@@ -151,8 +151,8 @@ fn a_wide_first_row_does_not_hide_that_another_pays_off() {
     assert!(sentence.ends_with(" the highest median is halves, 2.21 (0.91-4.14)."), "{sentence}");
 }
 
-/// Catches one of many rows that is called slower by chance: its interval of 95 % lies just above 1,
-/// which is enough for one row but not for one of ten.
+/// Catches one of many rows that is called slower by chance: its interval of 95 % lies just above
+/// 1, which is enough for one row but not for one of ten.
 #[test]
 fn many_rows_need_more_evidence_than_one() {
     let [_, halves, ..] = UNEVEN;
@@ -273,7 +273,6 @@ fn locks_cost_what_the_figures_say() {
     assert_eq!(lessons_of(&list(&[row_locks], 1.56)), [""; 0], "nothing to compare with");
     // Pixels differ from bands in more than the lock.
     assert_eq!(lessons_of(&list(&[bands, pixel_locks], 1.56)), [""; 0]);
-
     // The cost may be as large as its interval allows.
     let within = |highest| {
         let mut list = list(&[bands, row_locks], 1.56);
@@ -324,8 +323,9 @@ fn unequal_work_is_told_first() {
     let lessons = lessons_of(&list);
     assert_eq!(
         lessons[0],
-        "The work differs: primary rays per pixel are 4.4 in tiles, 4.4 in bands, 4.4 in rows, 25.0 \
-         in pixels; lanes in use are 97 % in tiles, 97 % in bands, 97 % in rows, 50 % in pixels."
+        "The work differs: primary rays per pixel are 4.4 in tiles, 4.4 in bands, 4.4 in rows, \
+         25.0 in pixels; lanes in use are 97 % in tiles, 97 % in bands, 97 % in rows, 50 % in \
+         pixels."
     );
     assert!(lessons.iter().all(|lesson| !lesson.contains("Single pixels")), "{lessons:?}");
     let text = list.screen(&[]);

@@ -8,8 +8,8 @@ use rayweave_measure::Interval;
 /// The distance from 1 from which the control's interval calls for a better measurement.
 const WIDE_CONTROL: f64 = 0.05;
 
-/// Returns the sentences on a subject's records: one for each number of threads, and a warning where
-/// they are uncertain.
+/// Returns the sentences on a subject's records: one for each number of threads, and a warning
+/// where they are uncertain.
 pub(super) fn sentences(group: &[Record], sections: &[Section<'_>]) -> Vec<String> {
     if sections.is_empty() {
         return vec![format!("Only {} was measured, so nothing is compared.", reference(group))];
