@@ -9,6 +9,9 @@ use rayweave_measure::statistics::{median, ratio_interval};
 /// The imbalance below which the cost counts as even.
 pub(super) const EVEN_IMBALANCE: f64 = 1.1;
 
+/// The factor by which the imbalance may be off, because the costs of tiles are measured once.
+const IMBALANCE_ERROR: f64 = 1.1;
+
 /// The largest number of lessons.
 const MAX_LESSONS: usize = 3;
 
@@ -74,8 +77,10 @@ fn shares(section: &Section<'_>) -> Option<String> {
     let (fixed, free) = (median_times(&fixed), median_times(&free));
     let is_even = first.imbalance.map(|imbalance| imbalance < EVEN_IMBALANCE);
     if let Some(ratio) = section.longer(&fixed, &free) {
-        // The largest share makes equal shares take at most this many times as long.
-        let explains = |imbalance: &f64| is_even == Some(false) && ratio.low <= *imbalance;
+        // The largest share makes equal shares take this many times as long, and locks add to it.
+        let explains = |imbalance: &f64| {
+            is_even == Some(false) && ratio.low <= *imbalance * IMBALANCE_ERROR
+        };
         let uneven = first.imbalance.filter(explains);
         let why = uneven.map(|imbalance| {
             let share = imbalance * 100.0 / section.threads as f64;
