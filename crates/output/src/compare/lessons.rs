@@ -78,9 +78,8 @@ fn shares(section: &Section<'_>) -> Option<String> {
     let is_even = first.imbalance.map(|imbalance| imbalance < EVEN_IMBALANCE);
     if let Some(ratio) = section.longer(&fixed, &free) {
         // The largest share makes equal shares take this many times as long, and locks add to it.
-        let explains = |imbalance: &f64| {
-            is_even == Some(false) && ratio.low <= *imbalance * IMBALANCE_ERROR
-        };
+        let explains =
+            |imbalance: &f64| is_even == Some(false) && ratio.low <= *imbalance * IMBALANCE_ERROR;
         let uneven = first.imbalance.filter(explains);
         let why = uneven.map(|imbalance| {
             let share = imbalance * 100.0 / section.threads as f64;
@@ -189,8 +188,12 @@ fn locks(section: &Section<'_>) -> Option<String> {
 fn row_lock(section: &Section<'_>, locked: &Record, free: &Record) -> Option<String> {
     if let Some(ratio) = section.slower(locked, free) {
         let percent = percent_longer(ratio.median);
-        let (locked, free) = (&locked.measurement.strategy, &free.measurement.strategy);
-        return Some(format!("One lock per row costs {percent} % here ({locked} against {free})."));
+        // The rows differ in more than the lock where the other strategy computes bands.
+        let (locked, free) = (&locked.measurement, &free.measurement);
+        return Some(format!(
+            "Rows with a lock each take {percent} % longer than {}s without one ({}, {}).",
+            free.granularity, locked.strategy, free.strategy
+        ));
     }
     let ratio = ratio_interval(&locked.measurement.samples_ns, &free.measurement.samples_ns)?;
     let limit = section.control_error.max(ratio.high - 1.0);

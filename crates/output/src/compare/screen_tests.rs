@@ -266,7 +266,11 @@ fn locks_cost_what_the_figures_say() {
         (&[bands, row_locks, pixel_locks], format!("{none} {pixels}")),
         (&[row_locks, pixel_locks], pixels.to_owned()),
         (&[bands, row_locks, fast], none.to_owned()),
-        (&[bands, slow], "One lock per row costs 10 % here (row-locks against bands).".to_owned()),
+        (
+            &[bands, slow],
+            "Rows with a lock each take 10 % longer than bands without one (row-locks, bands)."
+                .to_owned(),
+        ),
     ] {
         assert_eq!(lessons_of(&list(given, 1.56)), [expected]);
     }
