@@ -30,6 +30,7 @@ use rayweave_contract::Digest;
 use rayweave_measure::statistics::ratio_interval;
 use rayweave_measure::{Interval, Machine, Measurement, Noise};
 use serde::{Deserialize, Serialize};
+use std::path::is_separator;
 
 /// The schema number of the JSON. It changes when a key is removed or changes its meaning.
 const SCHEMA: u32 = 2;
@@ -277,7 +278,7 @@ fn short(digest: &str) -> String {
 
 /// Returns the scene's file without its folder.
 fn scene_file(scene: &str) -> &str {
-    scene.rsplit(['/', '\\']).next().unwrap_or_default()
+    scene.rsplit(is_separator).next().unwrap_or_default()
 }
 
 /// Returns the scene's file without its folder and ending.

@@ -2,7 +2,7 @@
 //!
 //! Numbers of scenes are `f64`, so almost no point that is written lies in a tilted surface, not
 //! even the one that a scene means. A light counts as lying in the surface if it is closer to it
-//! than [`IN_SURFACE`] roundings of the coordinates. Then the surface is moved, exactly, to pass
+//! than `IN_SURFACE` roundings of the coordinates. Then the surface is moved, exactly, to pass
 //! through the light, and meets the way to the light there, which hides nothing.
 
 use std::cmp::Ordering;

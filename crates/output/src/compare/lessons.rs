@@ -78,8 +78,11 @@ fn shares(section: &Section<'_>) -> Option<String> {
     let is_even = first.imbalance.map(|imbalance| imbalance < EVEN_IMBALANCE);
     if let Some(ratio) = section.longer(&fixed, &free) {
         // The largest share makes equal shares take this many times as long, and locks add to it.
-        let explains =
-            |imbalance: &f64| is_even == Some(false) && ratio.low <= *imbalance * IMBALANCE_ERROR;
+        // A tile larger than a share tells nothing of shares that cut through it.
+        let cuts = first.largest_tile.is_some_and(|tile| tile * section.threads as f64 > 1.0);
+        let explains = |imbalance: &f64| {
+            is_even == Some(false) && !cuts && ratio.low <= *imbalance * IMBALANCE_ERROR
+        };
         let uneven = first.imbalance.filter(explains);
         let why = uneven.map(|imbalance| {
             let share = imbalance * 100.0 / section.threads as f64;
@@ -188,11 +191,12 @@ fn locks(section: &Section<'_>) -> Option<String> {
 fn row_lock(section: &Section<'_>, locked: &Record, free: &Record) -> Option<String> {
     if let Some(ratio) = section.slower(locked, free) {
         let percent = percent_longer(ratio.median);
-        // The rows differ in more than the lock where the other strategy computes bands.
         let (locked, free) = (&locked.measurement, &free.measurement);
+        // Where the other strategy computes bands, the rows differ in more than the lock.
         return Some(format!(
-            "Rows with a lock each take {percent} % longer than {}s without one ({}, {}).",
-            free.granularity, locked.strategy, free.strategy
+            "{} takes {percent} % longer than {}: rows, each copied under the lock, against {}s \
+             in place. Most of that need not be the lock (rayweave explain).",
+            locked.strategy, free.strategy, free.granularity
         ));
     }
     let ratio = ratio_interval(&locked.measurement.samples_ns, &free.measurement.samples_ns)?;

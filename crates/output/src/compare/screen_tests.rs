@@ -268,7 +268,8 @@ fn locks_cost_what_the_figures_say() {
         (&[bands, row_locks, fast], none.to_owned()),
         (
             &[bands, slow],
-            "Rows with a lock each take 10 % longer than bands without one (row-locks, bands)."
+            "row-locks takes 10 % longer than bands: rows, each copied under the lock, against bands in \
+             place. Most of that need not be the lock (rayweave explain)."
                 .to_owned(),
         ),
     ] {
