@@ -195,7 +195,7 @@ fn row_lock(section: &Section<'_>, locked: &Record, free: &Record) -> Option<Str
         // Where the other strategy computes bands, the rows differ in more than the lock.
         return Some(format!(
             "{} takes {percent} % longer than {}: rows, each copied under the lock, against {}s \
-             in place. Most of that need not be the lock (rayweave explain).",
+             in place.",
             locked.strategy, free.strategy, free.granularity
         ));
     }

@@ -269,7 +269,7 @@ fn locks_cost_what_the_figures_say() {
         (
             &[bands, slow],
             "row-locks takes 10 % longer than bands: rows, each copied under the lock, against bands in \
-             place. Most of that need not be the lock (rayweave explain)."
+             place."
                 .to_owned(),
         ),
     ] {
