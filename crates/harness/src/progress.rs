@@ -12,6 +12,14 @@ pub fn bar(total: u64) -> ProgressBar {
     ProgressBar::new(total).with_style(style)
 }
 
+/// Lets a thread draw the bar ten times a second, if the bar is visible. Without a terminal there
+/// is no such thread: it could be one more than the system allows.
+pub fn draw_steadily(bar: &ProgressBar) {
+    if !bar.is_hidden() {
+        bar.enable_steady_tick(Duration::from_millis(100));
+    }
+}
+
 /// A bar of the share that is done. Dropping it removes the bar.
 pub struct Share(ProgressBar);
 
@@ -46,8 +54,8 @@ impl<'a, W: Work + ?Sized> ProgressWork<'a, W> {
     /// Wraps `work`, which computes `pixels` pixels.
     pub fn new(work: &'a W, pixels: u64) -> Self {
         let bar = bar(pixels);
-        // A thread of its own draws ten times a second, so that the clock runs during a slow tile.
-        bar.enable_steady_tick(Duration::from_millis(100));
+        // The clock runs during a slow tile.
+        draw_steadily(&bar);
         Self { work, bar }
     }
 

@@ -192,12 +192,18 @@ fn rendering_takes_one_thread_and_little_more_memory_than_the_image() {
         let text = as_nobody(
             folder.path(),
             &format!(
-                "prlimit --nproc=1 --as=100000000 $rayweave render --size 2000x2000 \
+                "timeout 60 prlimit --nproc=1 --as=100000000 $rayweave render --size 2000x2000 \
                  --antialiasing 0 --strategy sequential -o a.{format}"
             ),
         );
         assert!(text.expect_success().contains("2000 x 2000 pixels"));
     }
+    // A check starts no thread to draw a bar that nobody sees.
+    let check = as_nobody(
+        folder.path(),
+        "timeout 60 prlimit --nproc=1 $rayweave check --size 4x4 --strategy sequential",
+    );
+    assert!(check.expect_success().contains("all identical"));
     // Too little memory is an error before the work, not an abort after it.
     let message = as_nobody(
         folder.path(),

@@ -98,8 +98,8 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
 
 fn run_with_bar(check: &Check<'_>) -> Result<Verdict, String> {
     let bar = progress::bar(0);
-    // A thread of its own draws, so that the clock runs while threads are waited for.
-    bar.enable_steady_tick(Duration::from_millis(100));
+    // The clock runs while threads are waited for.
+    progress::draw_steadily(&bar);
     let verdict = check.run(|progress| {
         bar.set_length(progress.total as u64);
         bar.set_position(progress.done as u64);

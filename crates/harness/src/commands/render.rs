@@ -11,7 +11,6 @@ use rayweave_contract::{Image, Plan, Strategy, Work};
 use rayweave_core::{Analysis, Execution};
 use rayweave_measure::machine::Machine;
 use rayweave_scene_file::path_text;
-use std::io::{self, IsTerminal};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -61,17 +60,13 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, String> {
     let work = input.work(input.width, input.height)?;
     let preparing = begin.elapsed().as_secs_f64();
     let mut renderer = strategy.prepare(plan).map_err(|e| e.to_string())?;
-    // The bar takes time and a thread, so there is none where it is not visible.
-    let progress = (io::stderr().is_terminal())
-        .then(|| ProgressWork::new(&*work, image.pixels().len() as u64))
-        .filter(ProgressWork::is_seen);
-    let work: &dyn Work = progress.as_ref().map_or(&*work, |progress| progress);
+    let progress = ProgressWork::new(&*work, image.pixels().len() as u64);
+    // The bar takes time, so it is used only where it is visible.
+    let work: &dyn Work = if progress.is_seen() { &progress } else { &*work };
     let begin = Instant::now();
     let result = renderer.render(work, &mut image);
     let seconds = begin.elapsed().as_secs_f64();
-    if let Some(progress) = progress {
-        progress.finish();
-    }
+    progress.finish();
     result.map_err(|e| e.to_string())?;
 
     drop(reserved);
